@@ -24,21 +24,7 @@ pub fn to_cdr<T: Message>(message: &T) -> Vec<u8> {
     message.encoded()
 }
 
-/// Encoding and decoding of one type: compiled in this crate, for speed, and once.
-macro_rules! codec {
-    () => {
-        fn encoded(&self) -> Vec<u8> {
-            crate::cdr::encode(self)
-        }
-
-        fn decoded(bytes: &[u8]) -> Result<Self, crate::decode_error::DecodeError> {
-            crate::cdr::decode(bytes)
-        }
-    };
-}
-pub(crate) use codec;
-
-/// Encodes a message.
+/// Encodes a message. Each type calls this in an `impl` of its own: compiled in this crate, for speed, and once.
 pub(crate) fn encode<T: Message>(message: &T) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(USUAL);
     bytes.extend([LITTLE_ENDIAN[0], LITTLE_ENDIAN[1], 0, 0]);
@@ -55,7 +41,6 @@ pub fn from_cdr<T: Message>(bytes: &[u8]) -> Result<T, DecodeError> {
     T::decoded(bytes)
 }
 
-/// Decodes a message.
 pub(crate) fn decode<T: Message>(bytes: &[u8]) -> Result<T, DecodeError> {
     let fault = |problem: String| DecodeError { type_name: T::TYPE, problem };
     let length = bytes.len();

@@ -1,9 +1,9 @@
 //! The messages of the laboratory: generated ROS 2 types, schema texts, type hashes, the topic contract and
 //! the conversion to and from the types of the kernels.
 //!
-//! - [`msg`] and the packages of standard messages: types generated from the message files, those of this
+//! - [`msg`] and the packages of standard messages: types that the build makes of the message files, those of this
 //!   project in `msg/`, those of ROS 2 in `std/` (same fields, same type hashes). After a change of a message
-//!   file: `cargo run --release -p grainlab_msgs --example generate`, then `tests/golden/make_golden.py`
+//!   file: `tests/golden/make_golden.py`
 //! - [`INTERFACES`]: texts of other types of ROS 2, in `interfaces/`
 //! - `message`: name, hash and schema of a type; [`TypeInfo`]: the same as a value
 //! - `description`: the type description of a type, as `~/get_type_description` returns it
@@ -20,7 +20,6 @@ mod decode_error;
 mod description;
 mod exit;
 mod fixed_array;
-mod generated;
 mod guid;
 mod health;
 mod message;
@@ -34,14 +33,13 @@ pub use clock::{EPOCH_SECONDS, simulated_seconds, stamp, wall_stamp};
 pub use decode_error::DecodeError;
 pub use description::{FieldDescription, FieldTypeDescription, MessageDescription, TypeDescription};
 pub use exit::Exit;
-pub use generated::grainlab_msgs as msg;
-pub use generated::interfaces::INTERFACES;
-pub use generated::{
-    builtin_interfaces, diagnostic_msgs, geometry_msgs, rcl_interfaces, rosgraph_msgs, sensor_msgs, std_msgs,
-    tf2_msgs, visualization_msgs,
-};
 pub use guid::Guid;
 pub use health::{Health, Level};
 pub use message::{FieldInfo, Message, TypeInfo};
 pub use report::{Published, Received, Report};
 pub use topic::{Qos, Topic};
+pub use types::grainlab_msgs as msg;
+pub use types::{
+    INTERFACES, builtin_interfaces, diagnostic_msgs, geometry_msgs, rcl_interfaces, rosgraph_msgs,
+    sensor_msgs, std_msgs, tf2_msgs, visualization_msgs,
+};

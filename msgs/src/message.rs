@@ -68,27 +68,3 @@ pub struct FieldInfo {
     /// Full name of its type if that is a message, else empty.
     pub nested: &'static str,
 }
-
-/// The fields of a message, `"name" => (type_id, capacity, "nested")`.
-macro_rules! fields {
-    ($($name:literal => ($type_id:literal, $capacity:literal, $nested:literal)),* $(,)?) => {
-        &[$(FieldInfo { name: $name, type_id: $type_id, capacity: $capacity, nested: $nested }),*]
-    };
-}
-pub(crate) use fields;
-
-/// Assembles a schema text from message files: rosbag2 separates them by 80 equals signs.
-macro_rules! definition {
-    ($root:literal $(, $name:literal => $path:literal)* $(,)?) => {
-        concat!(
-            include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/", $root)),
-            $(
-                "\n================================================================================\nMSG: ",
-                $name,
-                "\n",
-                include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/", $path)),
-            )*
-        )
-    };
-}
-pub(crate) use definition;

@@ -1,7 +1,8 @@
-//! The list of message types.
+//! The message types, which the build writes from the message files (`generator/main.rs`), and the list of them.
 
-use crate::generated::TYPES;
 use crate::message::TypeInfo;
+
+include!(concat!(env!("OUT_DIR"), "/types.rs"));
 
 impl TypeInfo {
     /// The type with this full ROS name, if it is a type of this project or a standard one in use.

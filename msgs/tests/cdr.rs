@@ -1,8 +1,5 @@
 //! Decoding of arbitrary bytes.
 
-mod every_type;
-
-use every_type::for_every_type;
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use grainlab_msgs::msg::{Estimate, Packing, StrainRate};
@@ -11,6 +8,8 @@ use grainlab_msgs::{Message, from_cdr, to_cdr};
 use proptest::array::uniform9;
 use proptest::collection::vec;
 use proptest::prelude::*;
+
+include!(concat!(env!("OUT_DIR"), "/for_every_type.rs"));
 
 /// Any bit pattern, including infinities, subnormals and every NaN.
 fn any_f64() -> impl Strategy<Value = f64> {

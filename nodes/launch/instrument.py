@@ -38,13 +38,16 @@ def measurement():
 class Instrument:
     """A writer of wave speeds and a reader of the estimates, once both have discovered the inversion."""
 
-    def __init__(self, seconds=20.0):
+    def __init__(self, seconds=60.0):
         self.participant = participant()
         self.reader = reader(self.participant, "microstructure", Microstructure, LATCHED)
         self.writer = writer(self.participant, "wave_speeds", WaveSpeeds, LATCHED)
+        # Counts, because CycloneDDS's list of readers fails (IndexError) if a reader comes while the list is made.
         running = "is `grainlab run emt_inversion` running in this ROS_DOMAIN_ID?"
-        self.until(lambda: self.writer.get_matched_subscriptions(), seconds, f"nobody reads wave_speeds: {running}")
-        self.until(lambda: self.reader.get_matched_publications(), seconds, f"nobody writes microstructure: {running}")
+        readers = lambda: self.writer.get_publication_matched_status().current_count
+        writers = lambda: self.reader.get_subscription_matched_status().current_count
+        self.until(readers, seconds, f"nobody reads wave_speeds: {running}")
+        self.until(writers, seconds, f"nobody writes microstructure: {running}")
 
     def until(self, ready, seconds, trouble):
         end = time.monotonic() + seconds
@@ -54,13 +57,13 @@ class Instrument:
             time.sleep(0.01)
         return found
 
-    def infer(self, speeds, seconds=20.0):
+    def infer(self, speeds, seconds=60.0):
         """Sends the speeds with the time of this moment, and returns the answer to them."""
         nanoseconds = time.time_ns()
         speeds.header.stamp.sec, speeds.header.stamp.nanosec = divmod(nanoseconds, 10**9)
         return self.answer(speeds, seconds)
 
-    def answer(self, speeds, seconds=20.0):
+    def answer(self, speeds, seconds=60.0):
         """Sends the speeds as they are, and returns the answer with their stamp and name."""
         self.reader.take(64)  # answers to what others have sent
         self.writer.write(speeds)

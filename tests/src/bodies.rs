@@ -1,6 +1,7 @@
 //! The content of a recording, topic by topic, without repeats.
 
 use grainlab_msgs::msg::Microstructure;
+use grainlab_msgs::{Message, from_cdr};
 use grainlab_recordings::{Recording, Selection};
 use std::path::Path;
 
@@ -21,6 +22,19 @@ pub fn distinct(run: &Path, topic: &str) -> Vec<Vec<u8>> {
     }
     let mut seen = std::collections::HashSet::new();
     messages.iter().map(|m| m.payload.to_vec()).filter(|b| seen.insert(b.clone())).collect()
+}
+
+/// Number of recorded messages of a topic so far; 0 without a recording.
+pub fn recorded(run: &Path, topic: &str) -> usize {
+    let Ok(recording) = Recording::open(run) else { return 0 };
+    recording.messages(&Selection::topics([topic])).map_or(0, Iterator::count)
+}
+
+/// The distinct messages of a topic, decoded.
+pub fn decoded<T: Message>(run: &Path, topic: &str) -> Vec<T> {
+    let message =
+        |body: Vec<u8>| from_cdr(&body).unwrap_or_else(|e| panic!("{topic} of {}: {e}", run.display()));
+    distinct(run, topic).into_iter().map(message).collect()
 }
 
 /// Fails the test unless both runs are equal, byte for byte, on every reproducible topic.

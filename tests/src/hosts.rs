@@ -1,8 +1,9 @@
 //! Several hosts on one switch: network namespaces inside an outer one, so that no packet leaves them.
 
-use crate::lab::{LIMIT, Lab};
+use crate::lab::Lab;
 use crate::process::Process;
 use crate::python;
+use crate::wait::LIMIT;
 use std::path::PathBuf;
 use std::process::Command;
 use std::time::{Duration, Instant};

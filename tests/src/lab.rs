@@ -1,25 +1,32 @@
 //! The `grainlab` binary under test, in a separate folder and DDS domain.
 
+use crate::bodies::recorded;
 use crate::process::{Ended, Process, children};
+use crate::wait::{LIMIT, until};
 use grainlab_msgs::Topic;
 use grainlab_node_kit::{Bus, DdsBus, Names, Network, is_in_use};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicU16, Ordering};
-use std::time::{Duration, Instant};
+use std::sync::{Arc, LazyLock, Mutex, OnceLock};
+use std::time::Duration;
 use tempfile::TempDir;
 
-/// Time limit of any command of a test.
-pub const LIMIT: Duration = Duration::from_secs(120);
+/// Arguments of `grainlab launch` for a run of the small scene with more grains and a gas that takes some seconds.
+pub const SLOW: [&str; 4] = ["--set", "grains.count=200", "--set", "phase.gas.rate=-0.6"];
 
-/// Waits until `holds`; the test fails with `what` after [`LIMIT`].
-pub fn until(what: &str, mut holds: impl FnMut() -> bool) {
-    let begin = Instant::now();
-    while !holds() {
-        assert!(begin.elapsed() < LIMIT, "within {LIMIT:?}: {what}");
-        std::thread::sleep(Duration::from_millis(10));
-    }
-}
+/// Arguments for a run with more grains and a gas by the contact law: long enough for seven crashes.
+pub const LONG: [&str; 8] = [
+    "--set",
+    "grains.count=400",
+    "--set",
+    "phase.gas.method='soft'",
+    "--set",
+    "phase.gas.rate=-12.0",
+    "--set",
+    "phase.gas.control_period=100",
+];
 
 /// The pid of the child of `launcher` with these words in its command line, once there is one.
 pub fn appeared(launcher: &Process, words: &str) -> u32 {
@@ -77,20 +84,39 @@ impl Lab {
         let scene = scene.to_string_lossy();
         let mut arguments = vec!["launch", "--scene", &scene];
         arguments.extend(extra);
-        let ended = self.run(&arguments);
-        assert_eq!(ended.code, Some(0), "launch failed\n{}\n{}", ended.stdout, ended.stderr);
+        self.run(&arguments).assert_code(0);
         self.last_run()
+    }
+
+    /// Starts the launcher with a scene of `tests/golden` and these further arguments.
+    pub fn start_launch(&self, scene: &str, extra: &[&str]) -> Process {
+        let scene = scene_path(scene);
+        self.start(&[&["launch", "--scene", &scene], extra].concat())
+    }
+
+    /// The small scene with texts replaced, as a file in the folder.
+    pub fn tiny_with(&self, name: &str, replacements: &[(&str, &str)]) -> PathBuf {
+        let mut text =
+            std::fs::read_to_string(scene_path("tiny")).unwrap_or_else(|e| panic!("tiny.toml: {e}"));
+        for (from, to) in replacements {
+            assert!(text.contains(from), "tiny.toml has no {from:?}");
+            text = text.replace(from, to);
+        }
+        self.write(name, &text)
+    }
+
+    /// Writes a file in the folder.
+    pub fn write(&self, name: &str, text: &str) -> PathBuf {
+        let path = self.folder().join(name);
+        std::fs::write(&path, text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        path
     }
 
     /// Number of messages of `/stress` that the current run has recorded.
     pub fn recorded(&self) -> usize {
-        let recorded = || {
-            let runs = std::fs::read_dir(self.folder().join("recordings/runs")).ok()?;
-            let run = runs.flatten().next()?.path();
-            let recording = grainlab_recordings::Recording::open(&run).ok()?;
-            Some(recording.messages(&grainlab_recordings::Selection::topics(["/stress"])).ok()?.count())
-        };
-        recorded().unwrap_or(0)
+        let runs = std::fs::read_dir(self.folder().join("recordings/runs"));
+        let run = runs.ok().and_then(|mut all| all.next()?.ok());
+        run.map_or(0, |run| recorded(&run.path(), "/stress"))
     }
 
     /// Waits until the current run has recorded this many messages of `/stress`.
@@ -121,6 +147,53 @@ impl Default for Lab {
     fn default() -> Self {
         Self::new()
     }
+}
+
+/// The result of a run that nothing disturbs, of the small scene with these further arguments of `grainlab launch`. Each is
+/// made once for all tests of this process, which read it and leave it as it is.
+pub fn undisturbed(arguments: &[&str]) -> PathBuf {
+    type Runs = HashMap<Vec<String>, Arc<OnceLock<PathBuf>>>;
+    static LABS: Mutex<Vec<Lab>> = Mutex::new(Vec::new());
+    static RUNS: LazyLock<Mutex<Runs>> = LazyLock::new(|| {
+        extern "C" fn remove() {
+            LABS.lock().unwrap_or_else(|e| e.into_inner()).clear();
+        }
+        // SAFETY: the function has the signature that is asked for, and unwinds never.
+        unsafe { libc::atexit(remove) };
+        Mutex::default()
+    });
+    let key = arguments.iter().map(|a| (*a).to_owned()).collect();
+    let run = Arc::clone(RUNS.lock().unwrap_or_else(|e| e.into_inner()).entry(key).or_default());
+    run.get_or_init(|| {
+        let lab = Lab::new();
+        let run = lab.start_launch("tiny", arguments).ended(LIMIT).assert_code(0);
+        assert!(!run.stderr.contains("panicked"), "{}", run.stderr);
+        let run = lab.last_run();
+        LABS.lock().unwrap_or_else(|e| e.into_inner()).push(lab);
+        run
+    })
+    .clone()
+}
+
+/// The summary of a run.
+pub fn summary(run: &Path) -> serde_json::Value {
+    json_file(&run.join("summary.json"))
+}
+
+/// A file of JSON.
+pub fn json_file(path: &Path) -> serde_json::Value {
+    let text = std::fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    serde_json::from_slice(&text).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+/// A number in JSON.
+pub fn number(value: &serde_json::Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+/// The path of a scene of `tests/golden`, as an argument.
+pub fn scene_path(name: &str) -> String {
+    golden(&format!("scenes/{name}.toml")).to_string_lossy().into_owned()
 }
 
 /// The path of a built program in or above the folder of the running test.

@@ -5,15 +5,17 @@
 //! - [`terminal`]: a terminal of a given width, and what it shows
 //! - [`hosts`]: several hosts on one switch, as network namespaces
 //! - [`bodies`]: the content of a recording, topic by topic, without repeats
-//! - [`forger`]: a process outside the run that publishes forged messages
+//! - [`crowd`]: participants that are announced and do not exist
 //! - [`lattice`]: packings that need no simulation
+//! - [`wait`]: waiting for what another process does
 //! - [`python`]: the independent tools, if they are installed
 
 pub mod bodies;
-pub mod forger;
+pub mod crowd;
 pub mod hosts;
 pub mod lab;
 pub mod lattice;
 pub mod process;
 pub mod python;
 pub mod terminal;
+pub mod wait;

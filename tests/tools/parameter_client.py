@@ -134,7 +134,7 @@ def call(node, which, *arguments):
     end = time.monotonic() + 10.0
     number = 0
     while time.monotonic() < end:
-        if writer.get_matched_subscriptions() and reader.get_matched_publications():
+        if writer.get_publication_matched_status().current_count and reader.get_subscription_matched_status().current_count:
             # A server may match the reader of the answer later than the writer of the request: ask again.
             number += 1
             writer.write(request(CLIENT, number, *arguments))

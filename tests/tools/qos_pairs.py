@@ -43,5 +43,5 @@ for n, (offered, requested) in enumerate(PAIRS):
     topic = lambda participant: Topic(participant, f"rt/pair_{n}", String)
     made.append((DataWriter(first, topic(first), qos=Qos(*offered)), DataReader(second, topic(second), qos=Qos(*requested))))
 time.sleep(float(os.environ.get("SECONDS_TO_MATCH", "3")))
-print(json.dumps({f"/pair_{n}": bool(reader.get_matched_publications()) for n, (_, reader) in enumerate(made)}), flush=True)
+print(json.dumps({f"/pair_{n}": bool(reader.get_subscription_matched_status().current_count) for n, (_, reader) in enumerate(made)}), flush=True)
 signal.pause()

@@ -1,6 +1,6 @@
 """Reads what `grainlab bag export` wrote by readers of other projects, and compares it with the CSV of the same packing.
 
-usage: read_exports.py FOLDER    with the folders csv, vtk, vtkhdf, xyz, lammps, lammps-data in it, one packing each
+usage: read_exports.py FOLDER    with the folders csv, vtk, xyz, lammps, lammps-data in it, one packing each
 
 Positions and radii must be equal bit for bit where the reader holds double precision and
 parses exactly, forces to 1e-12 of the
@@ -13,7 +13,6 @@ import json
 import pathlib
 import sys
 
-import h5py
 import numpy as np
 import vtk
 from ovito.io import import_file
@@ -48,7 +47,7 @@ def close(name, found, expected):
 
 
 def poly_data(path):
-    reader = vtk.vtkXMLPolyDataReader() if path.suffix == ".vtp" else vtk.vtkHDFReader()
+    reader = vtk.vtkXMLPolyDataReader()
     reader.SetFileName(str(path))
     reader.Update()
     return reader.GetOutput()
@@ -58,28 +57,23 @@ def array(data, name):
     return vtk_to_numpy(data.GetArray(name))
 
 
-for kind, suffix in (("vtk", "vtp"), ("vtkhdf", "vtkhdf")):
-    data = poly_data(folder / kind / f"grains_1.{suffix}")
-    assert data.GetNumberOfVerts() == len(grains), (kind, data.GetNumberOfVerts())
-    same(f"{kind} radii", array(data.GetPointData(), "radius"), radii)
-    same(f"{kind} ids", array(data.GetPointData(), "id"), ids)
-    same(f"{kind} positions", array(data.GetPointData(), "position_unwrapped"), positions)
-    folded = vtk_to_numpy(data.GetPoints().GetData())
-    steps = np.linalg.solve(cell, (positions - folded).T)
-    assert np.abs(steps - np.round(steps)).max() < 1e-9
-    same(f"{kind} cell", array(data.GetFieldData(), "cell"), cell.ravel())
-    lines = poly_data(folder / kind / f"contacts_1.{suffix}")
-    assert lines.GetNumberOfLines() == len(contacts)
-    close(f"{kind} normal forces", array(lines.GetCellData(), "normal_force"), normal_forces)
-    close(f"{kind} tangential forces", array(lines.GetCellData(), "tangential_force"), tangential)
-    ends = vtk_to_numpy(lines.GetPoints().GetData()).reshape(-1, 2, 3)
-    branch = ends[:, 1] - ends[:, 0]
-    # The CSV has the normal from j to i.
-    assert np.abs(branch / np.linalg.norm(branch, axis=1)[:, None] + contacts[:, 2:5]).max() < 1e-9
-
-with h5py.File(folder / "vtkhdf/grains_1.vtkhdf") as file:
-    same("h5py radii", file["VTKHDF/PointData/radius"], radii)
-    assert file["grainlab"].attrs["contact_law"] in (b"hertz_mindlin", "hertz_mindlin")
+data = poly_data(folder / "vtk/grains_1.vtp")
+assert data.GetNumberOfVerts() == len(grains), data.GetNumberOfVerts()
+same("VTK radii", array(data.GetPointData(), "radius"), radii)
+same("VTK ids", array(data.GetPointData(), "id"), ids)
+same("VTK positions", array(data.GetPointData(), "position_unwrapped"), positions)
+folded = vtk_to_numpy(data.GetPoints().GetData())
+steps = np.linalg.solve(cell, (positions - folded).T)
+assert np.abs(steps - np.round(steps)).max() < 1e-9
+same("VTK cell", array(data.GetFieldData(), "cell"), cell.ravel())
+lines = poly_data(folder / "vtk/contacts_1.vtp")
+assert lines.GetNumberOfLines() == len(contacts)
+close("VTK normal forces", array(lines.GetCellData(), "normal_force"), normal_forces)
+close("VTK tangential forces", array(lines.GetCellData(), "tangential_force"), tangential)
+ends = vtk_to_numpy(lines.GetPoints().GetData()).reshape(-1, 2, 3)
+branch = ends[:, 1] - ends[:, 0]
+# The CSV has the normal from j to i.
+assert np.abs(branch / np.linalg.norm(branch, axis=1)[:, None] + contacts[:, 2:5]).max() < 1e-9
 
 frame = import_file(folder / "xyz/packings.xyz").compute(0)
 same("OVITO, extended XYZ, ids", frame.particles.identifiers[...], ids)

@@ -62,7 +62,11 @@ impl Schema {
             invalid: 0,
         };
         let message = decoder.message(self.root());
-        let message = message.map_err(|problem| fault(format!("{} {problem}", decoder.field)))?;
+        let message = message.map_err(|problem| {
+            // A type without fields is one byte.
+            let what = if decoder.field.is_empty() { "the message" } else { &decoder.field };
+            fault(format!("{what} {problem}"))
+        })?;
         match decoder.cursor.left() {
             0..=PADDING => Ok((message, decoder.invalid)),
             extra => Err(fault(format!(

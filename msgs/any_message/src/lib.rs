@@ -4,7 +4,6 @@
 //! - [`Schema::decode`]: bytes to a [`Message`], a tree of [`Value`]s
 //! - [`Schema::compare`]: a definition compared with the one that is wanted, and [`Mapping`]: messages of the one as those of the other
 //! - [`Schema::given`]: values that a user writes to a [`Message`], and [`Message::encode`]: values to bytes
-//! - [`Exploded`]: an array of a message as rows
 //! - [`Shown`]: a message as JSON, or as the text of `ros2 topic echo`
 //!
 //! Bytes are CDR (XCDR1) of either byte order, with their encapsulation header. No bytes and no schema cause a panic; memory
@@ -22,7 +21,6 @@
 mod cursor;
 mod decode;
 mod encode;
-mod explode;
 mod given;
 mod lines;
 mod literals;
@@ -34,7 +32,6 @@ mod types;
 mod value;
 
 pub use decode::DecodeError;
-pub use explode::Exploded;
 pub use mapping::{Comparison, Mapping};
 pub use schema::{Schema, SchemaError};
 pub use shown::Shown;

@@ -55,7 +55,6 @@ fn check_primitive(text: &str, primitive: Primitive) -> Result<(), String> {
     }
 }
 
-/// The values of an integer type.
 fn range(primitive: Primitive) -> (i128, i128) {
     let bits = 8 * primitive.size() as u32;
     match primitive {

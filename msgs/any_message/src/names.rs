@@ -23,14 +23,16 @@ fn check(name: &str, is_letter: fn(&u8) -> bool, [what, letters, example]: [&str
     ))
 }
 
-/// An error unless `name` is that of a message type or of `package/Type`.
+/// Checks that `name` is a message type (`package/msg/Type` or `package/Type`). The messages of a service or an action have its name
+/// with underscores, as in `Add_Request`.
 pub(crate) fn check_type(name: &str) -> Result<(), String> {
     let mut parts = name.split('/').rev();
     let last = parts.next().unwrap_or_default();
-    let plain = last.bytes().all(|b| b.is_ascii_alphanumeric());
-    let packages = parts.filter(|part| *part != "msg");
-    if last.starts_with(|c: char| c.is_ascii_uppercase())
-        && plain
+    let is_capital = |part: &str| {
+        part.starts_with(|c: char| c.is_ascii_uppercase()) && part.bytes().all(|b| b.is_ascii_alphanumeric())
+    };
+    let packages = parts.filter(|part| !["msg", "srv", "action"].contains(part));
+    if last.split('_').all(is_capital)
         && name.split('/').count() <= 3
         && packages.into_iter().all(|package| check_field(package).is_ok())
     {
@@ -73,6 +75,9 @@ mod tests {
             ("Point", true),
             ("geometry_msgs/Point", true),
             ("geometry_msgs/msg/Point", true),
+            ("Add_Request", true),
+            ("p/srv/Add_SendGoal_Request", true),
+            ("Add_", false),
             ("point", false),
             ("uint9", false),
             ("Po_int", false),

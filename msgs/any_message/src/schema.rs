@@ -12,9 +12,13 @@ use crate::types::{Constant, Element, Field, FieldType, Length, MessageType, Pri
 const DEEPEST: usize = 64;
 
 /// Types that every ROS 2 system has; some writers leave their text out.
-const BUILT_IN: [(&str, &str); 2] = [
+const BUILT_IN: [(&str, &str); 3] = [
     ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"),
     ("builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"),
+    (
+        "service_msgs/ServiceEventInfo",
+        "uint8 event_type\nbuiltin_interfaces/Time stamp\nchar[16] client_gid\nint64 sequence_number\n",
+    ),
 ];
 
 /// A parsed schema: the type of a topic with all types that it depends on.
@@ -39,7 +43,8 @@ fn too_deep(name: &str) -> SchemaError {
 
 impl Schema {
     /// Parses the schema of `type_name` (`pkg/msg/Type`): the text of its message file, then for each type that it depends on
-    /// a line of equals signs, a line `MSG: pkg/Type` and its text.
+    /// a line of equals signs, a line `MSG: pkg/Type` and its text. The text of an event of a service (`pkg/srv/Type_Event`) may be
+    /// the service file, which is what rosbag2 stores.
     ///
     /// # Errors
     /// See [`SchemaError`].
@@ -47,7 +52,18 @@ impl Schema {
         let mut texts = BTreeMap::new();
         let root = short(type_name);
         let mut sections = sections(text);
-        texts.insert(root.clone(), sections.next().map_or("", |(_, text)| text));
+        let text = sections.next().map_or("", |(_, text)| text);
+        let service =
+            root.strip_suffix("_Event").and_then(|service| Some((service, request_and_response(text)?)));
+        let event = service.map_or_else(String::new, |(service, _)| event_of(service));
+        match service {
+            Some((service, (request, response))) => {
+                texts.insert(root.clone(), event.as_str());
+                texts.insert(format!("{service}_Request"), request);
+                texts.insert(format!("{service}_Response"), response);
+            }
+            None => _ = texts.insert(root.clone(), text),
+        }
         for (name, text) in sections {
             let name = name.strip_prefix("MSG:").ok_or_else(|| no_message(&root))?;
             let name = short(name.trim());
@@ -79,6 +95,20 @@ fn short(name: &str) -> String {
         [package, _, last] => format!("{package}/{last}"),
         _ => name.to_owned(),
     }
+}
+
+/// Splits the text of a service file.
+fn request_and_response(text: &str) -> Option<(&str, &str)> {
+    let bar = text.lines().find(|line| line.trim() == "---")?;
+    let start = bar.as_ptr().addr() - text.as_ptr().addr();
+    Some((&text[..start], &text[start + bar.len()..]))
+}
+
+/// Returns the message in which ROS 2 publishes the events of a service (REP 2012).
+fn event_of(service: &str) -> String {
+    format!(
+        "service_msgs/ServiceEventInfo info\n{service}_Request[<=1] request\n{service}_Response[<=1] response\n"
+    )
 }
 
 /// True if two texts of a type have the same declarations; comments and spaces may differ.
@@ -242,6 +272,30 @@ mod tests {
         assert_eq!((schema.root().least, schema.root().depth), (27, 3));
         let Element::Message(b) = &schema.root().fields[1].kind.element else { panic!("not a message") };
         assert_eq!((b.constants[0].value.as_str(), b.fields[0].default.as_deref()), ("3", Some("5")));
+    }
+
+    #[test]
+    fn an_event_of_a_service_is_read_by_the_text_of_the_service_file() {
+        let bar = "=".repeat(80);
+        let text = format!("int64 a\nB b\n ---\n{bar}\nMSG: p/B\nint8 v\n");
+        let schema = Schema::parse("p/srv/Add_Event", &text).unwrap();
+        // A response of one byte: it has no fields.
+        let event = [
+            &[0, 1, 0, 0, 3, 0, 0, 0, 7, 0, 0, 0, 9, 0, 0, 0][..],
+            &[2; 16],
+            &[0, 0, 0, 0, 5, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0],
+            &[6, 0, 0, 0, 0, 0, 0, 0, 8, 0, 0, 0, 1, 0, 0, 0, 0],
+        ];
+        let shown = crate::Shown::new(&schema.decode(&event.concat()).unwrap()).json();
+        assert!(
+            shown.starts_with(r#"{"info":{"event_type":3,"stamp":{"sec":7,"nanosec":9},"client_gid":[2,"#),
+            "{shown}"
+        );
+        assert!(
+            shown.ends_with(r#""sequence_number":5},"request":[{"a":6,"b":{"v":8}}],"response":[{}]}"#),
+            "{shown}"
+        );
+        assert!(Schema::parse("p/srv/Add", &text).is_err(), "a service is not a message");
     }
 
     #[test]

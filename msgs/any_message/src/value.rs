@@ -58,11 +58,6 @@ impl Message {
     pub fn fields(&self) -> impl Iterator<Item = (&str, &Value)> {
         self.kind.fields.iter().map(|f| f.name.as_str()).zip(&self.values)
     }
-
-    /// The value of the field of this name.
-    pub fn get(&self, name: &str) -> Option<&Value> {
-        self.fields().find(|(field, _)| *field == name).map(|(_, value)| value)
-    }
 }
 
 impl Array {

@@ -69,22 +69,18 @@ impl Check {
         entries.first().map(|entry| check(field, entry)).transpose()
     }
 
-    /// A finite number that may be missing.
     pub(super) fn optional_finite(self, field: &str, entries: &[f64]) -> Checked<Option<f64>> {
         self.optional(field, entries, |field, v| self.finite(field, *v))
     }
 
-    /// A number of 0 or more that may be missing.
     pub(super) fn optional_not_negative(self, field: &str, entries: &[f64]) -> Checked<Option<f64>> {
         self.optional(field, entries, |field, v| self.not_negative(field, *v))
     }
 
-    /// A positive number that may be missing.
     pub(super) fn optional_positive(self, field: &str, entries: &[f64]) -> Checked<Option<f64>> {
         self.optional(field, entries, |field, v| self.positive(field, *v))
     }
 
-    /// The material of the grains.
     pub(super) fn material(self, shear_modulus: f64, poisson_ratio: f64, density: f64) -> Checked<Material> {
         let (known, requirement) = ((0.0..=0.5).contains(&poisson_ratio), "between 0 and 0.5");
         Ok(Material {
@@ -94,7 +90,6 @@ impl Check {
         })
     }
 
-    /// The contact law of this name with these parameters.
     pub(super) fn contact_law(self, name: &str, parameters: &[f64]) -> Checked<ContactLaw> {
         let refused = |fault| BoundaryError(format!("{}.contact_law is refused: {fault}", self.0));
         ContactLaw::new(name, parameters).map_err(refused)
@@ -185,7 +180,6 @@ impl Check {
         self.that(known.is_some(), format_args!("|{field}|"), 0.0, "1").map(|_| known.unwrap_or_default())
     }
 
-    /// The field `strain_ratios` of a message.
     pub(super) fn strain_ratios(self, m: &msg::StrainRatios) -> Checked<StrainRatios> {
         Ok(StrainRatios {
             total: self.optional_finite("strain_ratios.total", &m.total)?,

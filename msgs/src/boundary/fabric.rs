@@ -26,7 +26,6 @@ pub(super) fn fabric_message(f: &Fabric) -> msg::Fabric {
     }
 }
 
-/// The fabric of a packing with this number of contacts.
 pub(super) fn fabric(m: &msg::Fabric, contacts: u32) -> Result<Fabric, BoundaryError> {
     CHECK.all_finite("fourth_order_fabric", &m.fourth_order_fabric)?;
     Ok(Fabric {

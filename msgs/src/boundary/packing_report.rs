@@ -10,7 +10,7 @@ use super::symmetry::{symmetry, symmetry_message};
 use crate::msg;
 use crate::std_msgs::Header;
 use grainlab_core::min_contacts;
-use grainlab_core::results::{Elasticity, NotJammed, PackingReport};
+use grainlab_core::results::{Elasticity, NoStiffness, PackingReport};
 use grainlab_core::stress::Stress;
 
 const CHECK: Check = Check("PackingReport");
@@ -25,9 +25,11 @@ pub fn packing_report_message(
 ) -> Result<msg::PackingReport, BoundaryError> {
     let (jamming, floppy_contacts) = match report.elasticity.as_ref().err() {
         None => (msg::PackingReport::JAMMED, 0),
-        Some(NotJammed::NoContacts { .. }) => (msg::PackingReport::NO_CONTACTS, 0),
-        Some(NotJammed::OnlyRattlers { .. }) => (msg::PackingReport::ONLY_RATTLERS, 0),
-        Some(NotJammed::Floppy { contacts }) => (msg::PackingReport::FLOPPY, *contacts as u32),
+        Some(NoStiffness::NoContacts { .. }) => (msg::PackingReport::NO_CONTACTS, 0),
+        Some(NoStiffness::OnlyRattlers { .. }) => (msg::PackingReport::ONLY_RATTLERS, 0),
+        Some(NoStiffness::Floppy { contacts }) => (msg::PackingReport::FLOPPY, *contacts as u32),
+        Some(NoStiffness::TooDeep) => (msg::PackingReport::TOO_DEEP, 0),
+        Some(NoStiffness::Unsolved) => (msg::PackingReport::UNSOLVED, 0),
     };
     let message = msg::PackingReport {
         header,
@@ -102,14 +104,16 @@ fn elasticity(m: &msg::PackingReport) -> Result<Elasticity, BoundaryError> {
     let grains = m.contacts.grains as usize;
     Ok(Err(match (stiffness, m.jamming) {
         (Some(stiffness), msg::PackingReport::JAMMED) => return Ok(Ok(Box::new(stiffness))),
-        (None, msg::PackingReport::NO_CONTACTS) => NotJammed::NoContacts { grains },
+        (None, msg::PackingReport::NO_CONTACTS) => NoStiffness::NoContacts { grains },
         (None, msg::PackingReport::ONLY_RATTLERS) => {
-            NotJammed::OnlyRattlers { grains, needed: min_contacts(m.friction) }
+            NoStiffness::OnlyRattlers { grains, needed: min_contacts(m.friction) }
         }
-        (None, msg::PackingReport::FLOPPY) => NotJammed::Floppy { contacts: m.floppy_contacts as usize },
+        (None, msg::PackingReport::FLOPPY) => NoStiffness::Floppy { contacts: m.floppy_contacts as usize },
+        (None, msg::PackingReport::TOO_DEEP) => NoStiffness::TooDeep,
+        (None, msg::PackingReport::UNSOLVED) => NoStiffness::Unsolved,
         (_, other) => {
-            let known =
-                "0 (jammed) with a stiffness, 1 (no contacts), 2 (only rattlers), 3 (floppy) without one";
+            let known = "0 (jammed) with a stiffness, 1 (no contacts), 2 (only rattlers), 3 (floppy), 4 (too deep), 5 (unsolved) \
+                         without one";
             return Err(CHECK.code("jamming", other, known));
         }
     }))

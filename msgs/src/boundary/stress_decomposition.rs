@@ -32,7 +32,6 @@ fn network_message(n: &SubNetwork) -> msg::SubNetwork {
     }
 }
 
-/// The decomposition of a packing with this number of contacts.
 pub(super) fn stress_decomposition(
     m: &msg::StressDecomposition,
     contacts: u32,

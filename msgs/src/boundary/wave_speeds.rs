@@ -178,7 +178,6 @@ fn speed(index: usize, s: &msg::WaveSpeed) -> Result<MeasuredWave, BoundaryError
     })
 }
 
-/// The method of a code.
 pub(super) fn method(check: Check, field: &str, number: u8) -> Result<WaveMethod, BoundaryError> {
     WaveMethod::ALL.into_iter().find(|m| msg::WaveSpeed::code(*m) == number).ok_or_else(|| {
         let known = "0 (first arrival), 1 (cross correlation), 2 (peak), 3 (standing wave), 4 (dispersion)";

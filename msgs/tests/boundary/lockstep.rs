@@ -1,4 +1,4 @@
-use super::refuses;
+use super::{refuses, refuses_values};
 use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::std_msgs::Header;
@@ -105,7 +105,6 @@ fn each_fault_of_a_request_is_refused_by_name() {
             (|m| m.mode[5] = 3, "Stress.mode[5] (xy) = 3 is refused: it must be one of 0 (held), 1 (stress)"),
             (|m| m.setpoint[1] = INF, "Stress.setpoint[1] (yy) = inf is refused"),
             (|m| m.rate[2] = NAN, "Stress.rate[2] (zz) = NaN is refused"),
-            (|m| m.rate_limit = -0.5, "Stress.rate_limit = -0.5 is refused"),
             (
                 |m| m.law = 3,
                 "Stress.law = 3 is refused: it must be one of 0 (scaled), 1 (integral), 2 (normalised)",
@@ -117,14 +116,17 @@ fn each_fault_of_a_request_is_refused_by_name() {
             (|m| (m.law, m.leak) = (1, 1.5), "Stress.leak = 1.5 is refused: it must be between 0 and 1"),
             (|m| (m.law, m.gain) = (1, NAN), "Stress.gain = NaN is refused"),
             (|m| (m.law, m.gain) = (2, 0.0), "Stress.gain = 0.0 is refused"),
-            (|m| m.tangent[0].zz = INF, "Stress.tangent.zz = inf is refused"),
-            (|m| m.control_interval = 0.0, "Stress.control_interval = 0.0 is refused"),
-            (|m| m.strain.xy = NAN, "Stress.strain.xy = NaN is refused"),
-            (|m| m.solid_fraction = 0.0, "Stress.solid_fraction = 0.0 is refused"),
-            (|m| m.coordination = -1.0, "Stress.coordination = -1.0 is refused"),
-            (|m| m.unbalanced_force_ratio = NAN, "Stress.unbalanced_force_ratio = NaN is refused"),
         ],
         |m| ServoRequest::try_from(m),
+    );
+    refuses_values!(&stress(), |m| ServoRequest::try_from(m), "Stress", m:
+        m.rate_limit => -0.5,
+        m.tangent[0].zz => INF,
+        m.control_interval => 0.0,
+        m.strain.xy => NAN,
+        m.solid_fraction => 0.0,
+        m.coordination => -1.0,
+        m.unbalanced_force_ratio => NAN,
     );
 }
 

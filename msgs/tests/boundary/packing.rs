@@ -183,7 +183,7 @@ fn each_fault_of_a_packing_is_refused_by_name() {
             ),
             (
                 |m| m.contact_normal_force[0] = 1e12,
-                "Packing is refused: normal force (N), at most a hundred times that of the contact law, of the contact of grains",
+                "Packing is refused: the normal force of the contact of grains 4 and 9, 1.0000e12 N, is",
             ),
             (
                 |m| m.contact_tangential_force[1] = INF,

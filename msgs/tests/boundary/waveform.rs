@@ -1,5 +1,5 @@
-use super::refuses;
 use super::results::header;
+use super::{refuses, refuses_values};
 use grainlab_core::{Vec3, WaveMethod};
 use grainlab_msgs::boundary::vector_message;
 use grainlab_msgs::{from_cdr, msg, to_cdr};
@@ -35,21 +35,23 @@ fn each_fault_of_the_traces_is_refused_by_name() {
         &sent(),
         &[
             (|m| m.header.stamp.nanosec = u32::MAX, "Waveform.header.stamp.nanosec"),
-            (|m| m.method = 5, "Waveform.method = 5 is refused"),
             (|m| m.direction.z = 0.0, "Waveform.|direction| = 0.0 is refused: it must be 1"),
             (|m| m.polarization.x = f64::NAN, "Waveform.|polarization| = NaN is refused"),
-            (|m| m.frequency = 0.0, "Waveform.frequency = 0.0 is refused"),
             (|m| m.sample_rate = f64::INFINITY, "Waveform.sample_rate = inf is refused"),
             (|m| m.start = f64::NAN, "Waveform.start = NaN is refused"),
             (|m| m.quantity.clear(), "Waveform.quantity = \"\" is refused: it must be one of velocity"),
             (|m| m.unit = "mm/s".into(), "Waveform.unit = \"mm/s\" is refused: it must be one of m/s"),
             (|m| m.channel.clear(), "Waveform.channel has 0 entries and is refused: it must have 1"),
             (|m| m.distance.push(1.0), "Waveform.distance has 3 entries and is refused: it must have 2"),
-            (|m| m.distance[1] = -1.0, "Waveform.distance[1] = -1.0 is refused"),
             (|m| m.sample.push(0.0), "Waveform.sample has 7 entries and is refused: it must have 6"),
             (|m| m.sample.clear(), "Waveform.sample has 0 entries and is refused: it must have 2"),
             (|m| m.sample[4] = f32::NAN, "Waveform.sample[4] = NaN is refused"),
         ],
         |m| m.checked().cloned(),
+    );
+    refuses_values!(&sent(), |m| m.checked().cloned(), "Waveform", m:
+        m.method => 5,
+        m.frequency => 0.0,
+        m.distance[1] => -1.0,
     );
 }

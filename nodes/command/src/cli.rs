@@ -2,18 +2,18 @@
 
 use crate::commands::{analyze, bag, completions, invert, launch, man, pick, probe, run, scene};
 #[cfg(feature = "studio")]
-use crate::commands::{calibrate, campaign, new, report, reproduce, verify, view};
+use crate::commands::{calibrate, campaign, new, report, reproduce, view};
+use clap::error::ContextKind;
 use clap::{CommandFactory, Parser, Subcommand};
-#[cfg(feature = "studio")]
-use grainlab_bench as bench;
 use grainlab_console::Failure;
 #[cfg(feature = "studio")]
-use grainlab_graph::{doctor, interface, node, param, service, topic};
+use grainlab_graph::{doctor, interface, node, param, topic};
 use grainlab_node_kit::Exit;
 use std::ffi::OsString;
 
-/// Exit codes, shown by every help.
-const EXIT_CODES: &str = "\
+const END_OF_HELP: &str = "\
+Not listed: completions SHELL prints completions for a shell, man DIR writes manual pages.
+
 Exit codes: 0 done, 1 failure, 2 usage, scene or parameters, 3 done with data loss, 4 physics invalid, 130 interrupted.
 Results go to stdout, everything else to stderr. All quantities are in SI units.";
 
@@ -21,7 +21,7 @@ Results go to stdout, everything else to stderr. All quantities are in SI units.
 ///
 /// Without a command, the demo scene is run: every node as its own process over DDS on this host, everything recorded.
 #[derive(Debug, Parser)]
-#[command(name = "grainlab", version, after_help = EXIT_CODES, arg_required_else_help = false)]
+#[command(name = "grainlab", version, after_help = END_OF_HELP, arg_required_else_help = false)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -48,15 +48,17 @@ enum Command {
     /// Send waves through packings from files: their speeds, and the moduli that follow.
     Probe(probe::Args),
     /// Print completions of this command line for a shell.
+    #[command(hide = true)]
     Completions(completions::Args),
     /// Write a manual page for each command.
+    #[command(hide = true)]
     Man(man::Args),
     #[cfg(feature = "studio")]
     #[command(flatten)]
     Studio(Studio),
 }
 
-/// Commands of the studio: what people look at, and compare with.
+/// Commands of the studio: what people look at.
 #[cfg(feature = "studio")]
 #[derive(Debug, Subcommand)]
 enum Studio {
@@ -70,19 +72,16 @@ enum Studio {
     View(Box<view::Args>),
     /// Reproduce the tables and figures of the paper: sixteen states, one page.
     Reproduce(reproduce::Args),
-    /// List and measure topics: rate, bandwidth, delay, publishers and subscriptions.
+    /// List topics, print, publish and measure their messages, show publishers and subscriptions.
     #[command(subcommand)]
     Topic(topic::Command),
     /// List nodes, and what each publishes, subscribes to and serves.
     #[command(subcommand)]
     Node(node::Command),
-    /// Read, describe and set parameters of running nodes.
+    /// List, read and set parameters of running nodes.
     #[command(subcommand)]
     Param(param::Command),
-    /// List and call services.
-    #[command(subcommand)]
-    Service(service::Command),
-    /// Show the definitions of message and service types, and the topics of the laboratory.
+    /// Show the definitions of message and service types.
     #[command(subcommand)]
     Interface(interface::Command),
     /// Find what keeps nodes from working together: QoS, types, names, network.
@@ -90,21 +89,18 @@ enum Studio {
     /// Write a node of your own in Python or Rust, with a launch file and a test.
     #[command(subcommand)]
     New(new::NewCommand),
-    /// Compare with other codes and the literature: one table of numbers, tolerances and verdicts.
-    Verify(verify::Args),
-    /// Measure cost and accuracy on this machine.
-    #[command(subcommand)]
-    Bench(bench::Command),
 }
 
 /// Parses the words of a command line, of which the first is the program, runs the command, and reports. Wrong words end the process.
 pub fn main(words: Vec<OsString>) -> Exit {
-    crate::memory::bound();
+    grainlab_console::memory::bound();
     let cli = Cli::try_parse_from(&words).unwrap_or_else(|error| {
-        let words: Vec<String> = words[1..].iter().map(|word| word.to_string_lossy().into_owned()).collect();
-        if let Some(form) = crate::ros2::hint(&words).filter(|_| error.use_stderr()) {
+        let refused = error.get(ContextKind::InvalidArg).map(ToString::to_string);
+        let words = words[1..].iter().map(|word| word.to_string_lossy().into_owned());
+        let words: Vec<String> = words.chain(refused).collect();
+        if let Some(advice) = crate::hints::hint(&words).filter(|_| error.use_stderr()) {
             _ = error.print();
-            grainlab_console::say!("grainlab: instead of ros2 {}: {form}", words.join(" "));
+            grainlab_console::say!("grainlab: {advice}");
             std::process::exit(Exit::Usage as i32);
         }
         error.exit()
@@ -120,11 +116,17 @@ pub fn main(words: Vec<OsString>) -> Exit {
         Some(Command::Pick(args)) => pick::run(&args),
         Some(Command::Probe(args)) => probe::run(&args),
         Some(Command::Completions(args)) => completions::run(&args, Cli::command()),
-        Some(Command::Man(args)) => man::run(&args, Cli::command()),
+        // A manual has a page for each command.
+        Some(Command::Man(args)) => man::run(&args, with_all()),
         #[cfg(feature = "studio")]
         Some(Command::Studio(command)) => studio(&command),
     };
     outcome.unwrap_or_else(|failure| report(&failure))
+}
+
+/// The command line with the commands that its help does not list.
+fn with_all() -> clap::Command {
+    Cli::command().mut_subcommands(|command| command.hide(false))
 }
 
 #[cfg(feature = "studio")]
@@ -138,12 +140,9 @@ fn studio(command: &Studio) -> Result<Exit, Failure> {
         Studio::Topic(command) => topic::run(command),
         Studio::Node(command) => node::run(command),
         Studio::Param(command) => param::run(command),
-        Studio::Service(command) => service::run(command),
         Studio::Interface(command) => interface::run(command),
         Studio::Doctor(args) => doctor::run(args),
         Studio::New(command) => new::run(command),
-        Studio::Verify(args) => verify::run(args),
-        Studio::Bench(command) => bench::run(command),
     }
 }
 
@@ -157,9 +156,29 @@ mod tests {
     use super::*;
     use clap_complete::{Shell, generate};
 
+    /// Adds the flags of a command and its sub-commands that have the name of an earlier flag of the same command.
+    fn repeated(command: &clap::Command, found: &mut Vec<String>) {
+        let names = command.get_arguments().flat_map(|arg| {
+            let aliases = arg.get_all_aliases().unwrap_or_default();
+            let long = arg.get_long().into_iter().chain(aliases).map(|long| format!("--{long}"));
+            let short = arg.get_short().into_iter().chain(arg.get_all_short_aliases().unwrap_or_default());
+            long.chain(short.map(|short| format!("-{short}"))).collect::<Vec<_>>()
+        });
+        let mut known = std::collections::BTreeSet::new();
+        let again = names.filter(|name| !known.insert(name.clone()));
+        found.extend(again.map(|name| format!("{} {name}", command.get_name())));
+        command.get_subcommands().for_each(|below| repeated(below, found));
+    }
+
     #[test]
     fn no_two_flags_of_a_command_have_one_name() {
-        Cli::command().debug_assert();
+        let mut found = Vec::new();
+        let flag = |id: &'static str| clap::Arg::new(id).long("flag").short('f');
+        repeated(&clap::Command::new("planted").arg(flag("a")).arg(flag("b")), &mut found);
+        assert_eq!(found, ["planted --flag", "planted -f"]);
+        found.clear();
+        repeated(&Cli::command(), &mut found);
+        assert_eq!(found, [""; 0]);
     }
 
     /// Every command and sub-command, as the words that call it.
@@ -172,7 +191,7 @@ mod tests {
     #[test]
     fn the_manual_has_a_page_for_each_command_and_sub_command() {
         let folder = tempfile::tempdir().unwrap();
-        clap_mangen::generate_to(Cli::command(), folder.path()).unwrap();
+        clap_mangen::generate_to(with_all(), folder.path()).unwrap();
         let mut pages: Vec<_> = calls(&Cli::command(), "").iter().map(|call| format!("{call}.1")).collect();
         pages.sort_unstable();
         let mut written: Vec<_> = std::fs::read_dir(folder.path())
@@ -196,7 +215,7 @@ mod tests {
         }
     }
 
-    /// The commands as a table in Markdown.
+    /// The commands of the help as a table in Markdown.
     fn table() -> String {
         let line = |c: &clap::Command| {
             // A bar would end the cell.
@@ -204,7 +223,7 @@ mod tests {
             format!("| `{}` | {about} |\n", c.get_name())
         };
         "| command | |\n|---|---|\n".to_owned()
-            + &Cli::command().get_subcommands().map(line).collect::<String>()
+            + &Cli::command().get_subcommands().filter(|c| !c.is_hide_set()).map(line).collect::<String>()
     }
 
     /// The table between two comments of the README is that of the command line. With `GRAINLAB_BLESS=1` the test

@@ -2,18 +2,14 @@
 //!
 //! - `cli`: the command line, [`main`]
 //! - `commands`: one module per command, with the checks of its arguments
+//! - `hints`: advice for words that are not known here
 //! - [`in_memory`]: commands on data in memory
-//! - `memory`: settings of the allocator
 //! - `offline_recording`: a recording of the messages that a node would publish
-//! - `ros2`: words of the command line of ROS 2
-//! - `viewers`: the nodes of the studio
 
 mod cli;
 mod commands;
+mod hints;
 pub mod in_memory;
-mod memory;
 mod offline_recording;
-mod ros2;
-mod viewers;
 
 pub use cli::main;

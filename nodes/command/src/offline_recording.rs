@@ -48,8 +48,7 @@ impl OfflineRecording {
         };
         let specs: Vec<TopicSpec> =
             topics.iter().map(|t| TopicSpec::of_contract(t, &t.absolute_name())).collect();
-        let mut writer =
-            RunWriter::create(directory, &name, &specs, WriterOptions::default()).map_err(Failure::failed)?;
+        let mut writer = RunWriter::create(directory, &name, &specs, WriterOptions::default())?;
         writer.set_metadata("grainlab", env!("CARGO_PKG_VERSION"));
         // Equal messages give equal files at any time of day.
         writer.set_metadata(SESSION_KEY, command);
@@ -72,7 +71,6 @@ impl OfflineRecording {
         self.writer.write(&topic.absolute_name(), &sample).map(drop).map_err(Failure::failed)
     }
 
-    /// Completes the recording.
     pub(crate) fn finish(mut self) -> Result<(), Failure> {
         for (topic, count) in &self.counts {
             self.writer.ledger_mut().report(&topic.absolute_name(), self.guid, *count as u64);

@@ -2,9 +2,10 @@
 
 use fuzzing::{Counting, Target};
 use grainlab_msgs::{Guid, msg, to_cdr, topics};
-use grainlab_recordings::copy::{CopyOptions, Preset, Select, copy};
 use grainlab_recordings::import::ImportOptions;
 use grainlab_recordings::{Incoming, Recording, RunWriter, Selection, TopicSpec, WriterOptions, recover};
+use mcap::records::{MessageHeader, Metadata};
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -31,11 +32,31 @@ fn seeds(folder: &Path) -> Vec<Vec<u8>> {
     let file = run.finish().unwrap().file;
     let whole = std::fs::read(file).unwrap();
     let cut = whole[..whole.len() / 2].to_vec();
-    let unchunked = folder.join("unchunked.mcap");
-    let recording = Recording::open(folder).unwrap();
-    let options = CopyOptions::of_preset(Preset::FastWrite);
-    copy(&[recording], &Select::default(), &unchunked, &options).unwrap();
-    vec![whole, cut, std::fs::read(unchunked).unwrap()]
+    vec![whole, cut, unchunked(&Recording::open(folder).unwrap())]
+}
+
+/// The messages of a recording outside chunks, and an attachment and metadata.
+fn unchunked(recording: &Recording) -> Vec<u8> {
+    let options = mcap::WriteOptions::new().use_chunks(false).profile("ros2");
+    let mut writer = options.create(std::io::Cursor::new(Vec::new())).unwrap();
+    for file in recording.stored_files() {
+        let (name, media_type, data) = (file.name, file.media_type, file.bytes.into());
+        let attachment =
+            mcap::Attachment { log_time: file.time, create_time: file.created, name, media_type, data };
+        writer.attach(&attachment).unwrap();
+    }
+    for message in recording.messages(&Selection::default()).unwrap() {
+        let c = &message.channel;
+        let schema = writer.add_schema(&c.ros_type, &c.schema_encoding, &c.schema).unwrap();
+        let channel_id = writer.add_channel(schema, &c.topic, &c.message_encoding, &c.metadata).unwrap();
+        let (sequence, log_time, publish_time) = (message.sequence, message.log_time, message.publish_time);
+        let header = MessageHeader { channel_id, sequence, log_time, publish_time };
+        writer.write_to_known_channel(&header, &message.payload).unwrap();
+    }
+    let metadata = BTreeMap::from([("seed".to_owned(), "7".to_owned())]);
+    writer.write_metadata(&Metadata { name: "grainlab".to_owned(), metadata }).unwrap();
+    writer.finish().unwrap();
+    writer.into_inner().into_inner()
 }
 
 /// The bound stated in `grainlab_recordings::reader`, plus the index of the file.

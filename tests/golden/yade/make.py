@@ -1,4 +1,5 @@
-"""A packing of 80 grains from YADE, exported in every format that grainlab reads; run by the interpreter of YADE:
+"""A packing of 80 grains from YADE, exported in every format that grainlab reads, and one of 40 equal grains with YADE's default
+contact law; run by the interpreter of YADE:
 
     cd tests/golden/yade && /usr/bin/python3 make.py
 """
@@ -7,7 +8,7 @@ import json
 import os
 import sys
 
-sys.path.insert(0, "../../../recordings/src/import/yade")
+sys.path.insert(0, "../../../nodes/kit/recordings/src/import/yade")
 sys.dont_write_bytecode = True
 sys.argv = ["/usr/bin/yade", "-n", "-j", "1"]
 # The launcher loads YADE's libraries and, as it is not `__main__` here, starts neither servers nor a prompt.
@@ -65,5 +66,35 @@ with open("stress.json", "w") as file:
     # Positive in tension, the convention of YADE.
     json.dump([[stress[r, c] for c in range(3)] for r in range(3)], file)
 print("unbalanced force ratio", utils.unbalancedForce(), flush=True)
+
+O.reset()
+O.periodic = True
+O.cell.hSize = Matrix3.Identity * 0.8
+default = FrictMat(young=1e8, poisson=0.3, frictionAngle=0.35, density=2600)
+O.materials.append(default)
+cloud = pack.SpherePack()
+cloud.makeCloud(hSize=O.cell.hSize, rMean=0.07, num=40, seed=1, periodic=True)
+cloud.toSimulation(material=default)
+servo = PeriTriaxController(
+    goal=(-1e4, -1e4, -1e4), stressMask=7, dynCell=True, mass=0.2, globUpdate=5, maxStrainRate=(0.5, 0.5, 0.5), maxUnbalanced=0
+)
+O.engines = [
+    ForceResetter(),
+    InsertionSortCollider([Bo1_Sphere_Aabb()]),
+    InteractionLoop(
+        [Ig2_Sphere_Sphere_ScGeom()],
+        [Ip2_FrictMat_FrictMat_FrictPhys()],
+        [Law2_ScGeom_FrictPhys_CundallStrack()],
+    ),
+    servo,
+    NewtonIntegrator(damping=0.2),
+]
+O.dt = 0.5 * utils.PWaveTimeStep()
+O.run(40000, True)
+O.engines = O.engines[:3] + [NewtonIntegrator(damping=0.4)]
+O.cell.velGrad = Matrix3.Zero
+O.run(60000, True)
+grainlab_export.export("default_law")
+print("unbalanced force ratio", utils.unbalancedForce(), utils.getStress()[0, 0], flush=True)
 # Without YADE's shutdown, which may crash without a prompt.
 os._exit(0)

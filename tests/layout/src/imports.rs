@@ -14,10 +14,9 @@ pub(crate) fn imports(modules: &Modules) -> BTreeMap<ModulePath, BTreeSet<Module
     let aliases: BTreeMap<&ModulePath, Aliases> =
         modules.iter().map(|(path, module)| (path, Aliases::of(path, module, modules))).collect();
     let used_by = |path: &ModulePath, module: &Module| {
-        let mut paths = Paths { module: path, modules, found: Vec::new() };
-        module.items.iter().for_each(|item| paths.visit_item(item));
+        let of_the_crate = paths(module).into_iter().filter_map(|written| absolute(path, &written, modules));
         let mut used: BTreeSet<ModulePath> =
-            paths.found.iter().filter_map(|target| defining(target, modules, &aliases)).collect();
+            of_the_crate.filter_map(|target| defining(&target, modules, &aliases)).collect();
         used.remove(path);
         used
     };
@@ -62,24 +61,24 @@ fn defining(
     None
 }
 
-/// Every path in a module that refers to its crate, from the crate root.
-struct Paths<'a> {
-    module: &'a ModulePath,
-    modules: &'a Modules,
-    found: Vec<Vec<String>>,
+/// Returns every path of two names or more in a module, as written.
+pub(crate) fn paths(module: &Module) -> Vec<Vec<String>> {
+    let mut paths = Paths(Vec::new());
+    module.items.iter().for_each(|item| paths.visit_item(item));
+    paths.0
 }
 
-impl<'ast> Visit<'ast> for Paths<'_> {
+struct Paths(Vec<Vec<String>>);
+
+impl<'ast> Visit<'ast> for Paths {
     fn visit_item_use(&mut self, item: &'ast syn::ItemUse) {
-        for (target, _) in leaves(&item.tree, Vec::new()) {
-            self.found.extend(absolute(self.module, &target, self.modules));
-        }
+        self.0.extend(leaves(&item.tree, Vec::new()).into_iter().map(|(target, _)| target));
     }
 
     fn visit_path(&mut self, path: &'ast syn::Path) {
         let segments: Vec<String> = path.segments.iter().map(|s| s.ident.to_string()).collect();
         if segments.len() > 1 {
-            self.found.extend(absolute(self.module, &segments, self.modules));
+            self.0.push(segments);
         }
         syn::visit::visit_path(self, path);
     }
@@ -87,9 +86,9 @@ impl<'ast> Visit<'ast> for Paths<'_> {
     // The arguments of `format!`, `assert!` and their kind.
     fn visit_macro(&mut self, called: &'ast syn::Macro) {
         let arguments = Punctuated::<syn::Expr, syn::Token![,]>::parse_terminated;
-        let mut inner = Paths { module: self.module, modules: self.modules, found: Vec::new() };
+        let mut inner = Paths(Vec::new());
         called.parse_body_with(arguments).iter().flatten().for_each(|argument| inner.visit_expr(argument));
-        self.found.extend(inner.found);
+        self.0.extend(inner.0);
     }
 
     // In an inline module `super` means another module; inline modules contain tests and constants.

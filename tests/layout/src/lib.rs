@@ -1,19 +1,18 @@
-//! Rules for the source of every crate, checked on the source.
+//! The structure of the workspace, checked on its source.
 //!
 //! - `modules`: the modules of a crate, one file each
 //! - `imports`: the modules that a module uses, with re-exports resolved
 //! - `rules`: violations of the rules, as text
 //! - `layers`: the order of crates; `dependencies`: what they link through others
-//! - `counts`: how much source there is
-//! - `outside`: a crate outside of the workspace uses ours
+//! - `outside`: a crate outside of the workspace uses ours; `installs`: texts install ours, not somebody else's
 //! - `samples`: tests of the rules on small crates; `workspace`: every crate keeps them
 
 // All of it is tests: a build without tests does not pay for it.
 #![cfg(test)]
 
-mod counts;
 mod dependencies;
 mod imports;
+mod installs;
 mod layers;
 mod modules;
 mod outside;

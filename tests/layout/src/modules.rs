@@ -1,7 +1,7 @@
 //! The modules of a crate, one file each.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use syn::{Attribute, Item, ItemMod};
 
 /// A module's path from the crate root; empty for the root itself.
@@ -9,10 +9,6 @@ pub(crate) type ModulePath = Vec<String>;
 
 /// One module: a file, or the root.
 pub(crate) struct Module {
-    /// Source file of the module.
-    pub(crate) file: PathBuf,
-    /// Lines of the file.
-    pub(crate) lines: usize,
     /// Items without those of tests.
     pub(crate) items: Vec<Item>,
 }
@@ -38,7 +34,7 @@ fn read(file: &Path, children: &Path, path: ModulePath, found: &mut BTreeMap<Mod
         let path = [path.clone(), vec![name.clone()]].concat();
         read(&file, &children.join(&name), path, found);
     }
-    found.insert(path, Module { file: file.to_owned(), lines: text.lines().count(), items });
+    found.insert(path, Module { items });
 }
 
 /// The declaration of a module in a separate file.

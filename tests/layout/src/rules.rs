@@ -1,14 +1,11 @@
 //! Violations of the rules, as text.
 
-use crate::imports::imports;
+use crate::imports::{imports, paths};
 use crate::modules::{Module, ModulePath, declaration};
 use petgraph::algo::tarjan_scc;
 use petgraph::graphmap::DiGraphMap;
 use std::collections::{BTreeMap, BTreeSet};
 use syn::{Item, UseTree, Visibility};
-
-/// Maximum length of a file, lines.
-pub(crate) const MAX_LINES: usize = 500;
 
 /// Groups of modules in which each uses all others of its group, directly or indirectly.
 pub(crate) fn circles(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
@@ -45,10 +42,17 @@ pub(crate) fn doubled(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
     found
 }
 
-/// Files longer than [`MAX_LINES`].
-pub(crate) fn long_files(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
-    let long = modules.values().filter(|m| m.lines > MAX_LINES);
-    long.map(|m| format!("{}: {} lines", m.file.display(), m.lines)).collect()
+/// Uses of files, clocks, sockets and processes, and of the environment.
+pub(crate) fn outside(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
+    const OUTSIDE: [&str; 6] = ["env", "fs", "net", "os", "process", "time"];
+    let is_outside = |used: &Vec<String>| {
+        used[0] == "std" && used.get(1).is_some_and(|part| OUTSIDE.contains(&part.as_str()))
+    };
+    let of_module = |(path, module): (&ModulePath, &Module)| -> Vec<String> {
+        let used = paths(module).into_iter().filter(is_outside);
+        used.map(|used| format!("{} uses {}", name(path), used.join("::"))).collect()
+    };
+    modules.iter().flat_map(of_module).collect()
 }
 
 /// The first name of an import that is not `self` or `crate`.

@@ -1,7 +1,7 @@
 //! The rules detect violations, in small crates made for the tests.
 
 use crate::modules::modules;
-use crate::rules::{circles, doubled, long_files};
+use crate::rules::{circles, doubled, outside};
 use std::path::PathBuf;
 
 /// A crate of these files, removed when dropped.
@@ -84,7 +84,18 @@ fn a_public_module_whose_items_are_re_exported_has_two_paths() {
 }
 
 #[test]
-fn a_file_of_501_lines_is_too_long() {
-    let sample = Sample::new(&[("lib.rs", &"\n".repeat(501))]);
-    assert_eq!(long_files(&modules(&sample.root())).len(), 1);
+fn files_clocks_sockets_and_processes_are_outside() {
+    let sample = Sample::new(&[
+        ("lib.rs", "mod a; use std::{collections::BTreeMap, fs}; fn f() { std::process::exit(1); }"),
+        ("a.rs", "use std::time::Instant; fn f() { format!(\"{:?}\", std::net::Ipv4Addr::LOCALHOST); }"),
+    ]);
+    assert_eq!(
+        outside(&modules(&sample.root())),
+        [
+            "the root uses std::fs",
+            "the root uses std::process::exit",
+            "a uses std::time::Instant",
+            "a uses std::net::Ipv4Addr::LOCALHOST"
+        ]
+    );
 }

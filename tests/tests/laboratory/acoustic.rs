@@ -2,20 +2,14 @@
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::sync::LazyLock;
 use system_tests::bodies::distinct;
-use system_tests::lab::{LIMIT, Lab, appeared, golden, until};
+use system_tests::lab::{Lab, appeared, number, scene_path, summary, undisturbed};
 use system_tests::process::send;
+use system_tests::wait::{LIMIT, until};
 
 /// One run with a probe whose speeds have an error of 0.3 %, as in `grainlab launch acoustic`.
-static RUN: LazyLock<(Lab, PathBuf)> = LazyLock::new(|| {
-    let lab = Lab::new();
-    let run = lab.launch(&golden("scenes/tiny.toml"), &["acoustic"]);
-    (lab, run)
-});
-
-fn summary(run: &Path) -> Value {
-    serde_json::from_slice(&std::fs::read(run.join("summary.json")).unwrap()).unwrap()
+fn run() -> PathBuf {
+    undisturbed(&["acoustic"])
 }
 
 /// Bodies of a topic, sorted: the order in which the kinds of data are inverted depends on timing.
@@ -25,14 +19,9 @@ fn bodies(run: &Path, topic: &str) -> Vec<Vec<u8>> {
     bodies
 }
 
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
-}
-
 #[test]
 fn both_kinds_of_data_are_recorded_inverted_and_agree() {
-    let (_, run) = &*RUN;
-    let summary = summary(run);
+    let summary = summary(&run());
     for name in ["/wave_speeds", "/packing_report", "/microstructure"] {
         let topics = summary["topics"].as_array().unwrap();
         let topic =
@@ -75,69 +64,48 @@ fn both_kinds_of_data_are_recorded_inverted_and_agree() {
 
 #[test]
 fn recorded_wave_speeds_played_into_a_fresh_inversion_give_the_recorded_bytes() {
-    let (_, run) = &*RUN;
-    let replay = Lab::new();
-    let out = replay.folder().join("again");
-    let recorder = replay.start(&["bag", "record", "-a", "-o", &out.to_string_lossy()]);
-    let inversion = replay.start(&["run", "emt_inversion"]);
-    let run = run.to_string_lossy();
-    let played = replay.run(&["bag", "play", &run, "--topics", "wave_speeds", "--min-subscribers", "2"]);
-    assert_eq!(played.code, Some(0), "{}\n{}", played.stdout, played.stderr);
+    let (run, lab) = (run(), Lab::new());
+    let out = lab.folder().join("again");
+    let recorder = lab.start(&["bag", "record", "-a", "-o", "again"]);
+    let inversion = lab.start(&["run", "emt_inversion"]);
+    let subscribers = ["--topics", "wave_speeds", "--min-subscribers", "2"];
+    lab.run(&[&["bag", "play", &run.to_string_lossy()], &subscribers[..]].concat()).assert_code(0);
     until("the last speeds are inverted", || distinct(&out, "/microstructure").len() >= 2);
     for node in [inversion, recorder] {
-        node.signal(libc::SIGINT);
-        let ended = node.ended(LIMIT);
-        assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
+        node.ended_by(libc::SIGINT).assert_code(0);
     }
-    let recorded = distinct(Path::new(&*run), "/microstructure");
+    let recorded = distinct(&run, "/microstructure");
     for body in distinct(&out, "/microstructure") {
         assert!(recorded.contains(&body), "an inversion that the run did not have");
     }
-    assert_eq!(distinct(Path::new(&*run), "/wave_speeds"), distinct(&out, "/wave_speeds"));
+    assert_eq!(distinct(&run, "/wave_speeds"), distinct(&out, "/wave_speeds"));
 }
 
 #[test]
 fn killing_the_probe_changes_no_byte() {
-    let (_, quiet) = &*RUN;
-    let lab = Lab::new();
-    let scene = golden("scenes/tiny.toml");
-    let launcher = lab.start(&["launch", "acoustic", "--scene", &scene.to_string_lossy()]);
+    let (quiet, lab) = (run(), Lab::new());
+    let launcher = lab.start(&["launch", "acoustic", "--scene", &scene_path("tiny")]);
     // After the start of the run, and before its first packing.
     lab.until_recorded(20);
-    let probe = appeared(&launcher, "run acoustic_probe");
-    send(probe, libc::SIGKILL);
-    let ended = launcher.ended(LIMIT);
-    assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
+    send(appeared(&launcher, "run acoustic_probe"), libc::SIGKILL);
+    launcher.ended(LIMIT).assert_code(0);
     let run = lab.last_run();
     let nodes = summary(&run)["nodes"].clone();
     let probe = nodes.as_array().unwrap().iter().find(|n| n["name"] == "acoustic_probe").cloned();
     assert_eq!(probe.unwrap()["restarts"], 1, "{nodes}");
     for topic in ["/packing", "/packing_report", "/wave_speeds", "/microstructure"] {
-        assert_eq!(bodies(quiet, topic), bodies(&run, topic), "{topic}");
+        assert_eq!(bodies(&quiet, topic), bodies(&run, topic), "{topic}");
     }
 }
 
 #[test]
 fn grainlab_probe_of_a_recording_gives_the_results_of_the_live_probe() {
-    let (lab, run) = &*RUN;
-    let out = lab.folder().join("offline");
-    let ended = lab.run(&[
-        "probe",
-        &run.to_string_lossy(),
-        "--speed-noise",
-        "0.003",
-        "--format",
-        "csv",
-        "--record",
-        &out.to_string_lossy(),
-    ]);
-    assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
-    assert_eq!(distinct(run, "/wave_speeds"), distinct(&out, "/wave_speeds"));
-    let table = lab.folder().join("probed.csv");
-    std::fs::write(&table, &ended.stdout).unwrap();
-    let table = table.to_string_lossy();
-    let judged = lab.run(&["invert", "--table", &table, "--judge", "--model", "relaxed", "--format", "json"]);
-    assert_eq!(judged.code, Some(0), "{}\n{}", judged.stdout, judged.stderr);
-    let scores: Value = serde_json::from_str(&judged.stdout).unwrap();
-    assert!(judged.stdout.contains("\"z\"") && scores.is_array(), "{}", judged.stdout);
+    let (run, lab) = (run(), Lab::new());
+    let flags = ["--speed-noise", "0.003", "--format", "csv", "--record", "offline"];
+    let probed = lab.run(&[&["probe", &run.to_string_lossy()], &flags[..]].concat()).assert_code(0);
+    assert_eq!(distinct(&run, "/wave_speeds"), distinct(&lab.folder().join("offline"), "/wave_speeds"));
+    lab.write("probed.csv", &probed.stdout);
+    let judge = ["invert", "--table", "probed.csv", "--judge", "--model", "relaxed", "--format", "json"];
+    let scores: Value = lab.run(&judge).assert_code(0).json();
+    assert!(scores.to_string().contains("\"z\"") && scores.is_array(), "{scores}");
 }

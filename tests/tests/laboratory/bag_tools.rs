@@ -6,9 +6,10 @@ use std::process::{Command, Stdio};
 
 use grainlab_recordings::{Recording, Selection};
 use serde_json::Value;
-use system_tests::lab::{LIMIT, Lab, golden};
+use system_tests::lab::{Lab, golden};
 use system_tests::process::Process;
 use system_tests::python;
+use system_tests::wait::LIMIT;
 
 const READERS: &str = "mcap_ros2, rosbags, zstandard, lz4, yaml";
 
@@ -84,16 +85,16 @@ fn copies_pass_the_acceptance_check_and_python_reads_the_same_values() {
     let bag = folder.join("rosbags");
     let bag = bag.to_str().unwrap();
     for (arguments, out) in [
-        (&["cut", ours, "--start-offset", "0.1", "--duration", "0.2"][..], "cut"),
-        (&["cut", bag, "--start", "1700000000.5", "--end", "2023-11-14T22:13:21Z"], "cut_foreign.mcap"),
-        (&["filter", ours, "--regex", "/(stress|packing_r.*)", "--compression", "lz4"], "filtered"),
-        (&["filter", bag, "--types", "sensor_msgs/msg/Imu", "--compression", "none"], "imu"),
-        (&["merge", ours, bag, "--exclude", "rosout"], "merged"),
-        (&["compress", bag, "--preset", "zstd_small"], "small.mcap"),
-        (&["convert", ours, "--format", "mcap", "--chunk-size", "65536"], "converted"),
-        (&["convert", ours, "--pictures"], "pictured.mcap"),
+        (&[ours, "--start-offset", "0.1", "--duration", "0.2", "--format", "mcap"][..], "cut"),
+        (&[bag, "--start", "1700000000.5", "--end", "2023-11-14T22:13:21Z"], "cut_foreign.mcap"),
+        (&[ours, "--regex", "/(stress|packing_r.*)", "--format", "mcap", "--compression", "lz4"], "filtered"),
+        (&[bag, "--types", "sensor_msgs/msg/Imu", "--format", "mcap", "--compression", "none"], "imu"),
+        (&[ours, bag, "--exclude", "rosout"], "merged"),
+        (&[bag, "--compression", "zstd"], "small.mcap"),
+        (&[ours, "--format", "mcap"], "converted"),
+        (&[ours, "--pictures"], "pictured.mcap"),
     ] {
-        let arguments = [&["bag"], arguments, &["-o", out]].concat();
+        let arguments = [&["bag", "convert"], arguments, &["-o", out]].concat();
         run(&lab, &arguments);
         let path = lab.folder().join(out);
         let check = python::tool(&python, "check_mcap.py", &[path.to_str().unwrap()]);
@@ -154,25 +155,6 @@ fn steps_are_played_one_by_one_and_a_recorder_takes_the_topics_it_is_told_to() {
     assert!((1..=5).contains(&info.messages), "{}", info.messages);
 }
 
-#[test]
-fn a_snapshot_is_written_when_its_trigger_comes() {
-    let lab = Lab::new();
-    let source = lab.launch(&golden("scenes/tiny.toml"), &[]);
-    let source = source.to_str().unwrap();
-    let recorder =
-        lab.start(&["bag", "record", "--snapshot", "60", "--trigger", "packing_report", "-o", "last"]);
-    run(&lab, &["bag", "play", source, "--topics", "stress", "packing_report", "--rate", "10"]);
-    recorder.signal(libc::SIGINT);
-    let ended = recorder.ended(LIMIT);
-    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
-    let of = |path: &Path, topic: &str| {
-        Recording::open(path).unwrap().messages(&Selection::topics([topic])).unwrap().count()
-    };
-    let last = lab.folder().join("last");
-    assert_eq!(of(&last, "/packing_report"), of(Path::new(source), "/packing_report"));
-    assert!(of(&last, "/stress") > 0);
-}
-
 /// Topics of types that grainlab does not have, on CycloneDDS.
 fn peer(lab: &Lab, python: &Path, what: &str) -> Process {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tools/foreign_peer.py");
@@ -216,7 +198,7 @@ fn topics_of_any_type_are_recorded_and_played_back_with_every_value() {
     let topics: Vec<&str> = sent.keys().map(String::as_str).collect();
     assert_eq!(topics, ["/chatter", "/late", "/mystery", "/scan/pairs"]);
     let known = ["--topics", "chatter", "late", "scan/pairs"];
-    run(&lab, &[&["bag", "filter", "any", "-o", "known"], &known[..]].concat());
+    run(&lab, &[&["bag", "convert", "any", "--format", "mcap", "-o", "known"], &known[..]].concat());
     let total: usize = sent.iter().filter(|(name, _)| *name != "/mystery").map(|(_, all)| all.len()).sum();
     for (reader, path) in [("mcap", "known/known_0.mcap"), ("rosbags", "known")] {
         assert_eq!(compare(&lab, &python, reader, path), total, "{reader}");
@@ -310,8 +292,8 @@ fn a_difference_of_recordings_is_named_by_topic_message_and_field_and_none_is_ex
     assert_eq!(differs.code, Some(1));
     assert!(differs.stdout.contains("/packing: message 1: "), "{}", differs.stdout);
     let without = lab.folder().join("without");
-    let left_out =
-        ["bag", "filter", many.to_str().unwrap(), "--exclude", "stress", "-o", without.to_str().unwrap()];
+    let [source, to] = [&many, &without].map(|path| path.to_str().unwrap());
+    let left_out = ["bag", "convert", source, "--exclude", "stress", "--format", "mcap", "-o", to];
     assert_eq!(lab.run(&left_out).code, Some(0));
     let missing = diff(&many, &without, &["--times"]);
     assert_eq!(missing.code, Some(1));
@@ -328,6 +310,6 @@ fn a_difference_of_recordings_is_named_by_topic_message_and_field_and_none_is_ex
         let differs = lab.run(&["bag", "diff", "xy.mcap", "yx.mcap"]);
         assert!(differs.code == Some(1) && differs.stdout.contains("its definition"), "{}", differs.stdout);
     }
-    let late = lab.run(&["bag", "cut", many.to_str().unwrap(), "--start-offset", "500", "-o", "late"]);
+    let late = lab.run(&["bag", "convert", source, "--start-offset", "500", "-o", "late.mcap"]);
     assert!(late.code == Some(2) && late.stderr.contains("the recording has"), "{}", late.stderr);
 }

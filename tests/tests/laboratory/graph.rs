@@ -8,9 +8,10 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
-use system_tests::lab::{LIMIT, Lab, golden, grainlab};
+use system_tests::lab::{Lab, golden, grainlab};
 use system_tests::process::{Ended, Process};
 use system_tests::python;
+use system_tests::wait::LIMIT;
 
 fn json(ended: &Ended) -> Value {
     serde_json::from_str(&ended.stdout).unwrap_or_else(|e| panic!("{e}: {}\n{}", ended.stdout, ended.stderr))
@@ -73,6 +74,34 @@ fn commands_show_and_set_what_a_running_laboratory_has() {
     let decoded: Stress = serde_json::from_value(stress).expect("every field of the message");
     assert!(decoded.stress.zz > 0.0 && decoded.sequence > 0);
 
+    for line in [
+        "topic list -t",
+        "topic echo /stress grainlab_msgs/msg/Stress --once",
+        "topic echo /stress --field stress.zz --once",
+        "topic echo --once /stress --qos-reliability best_effort --qos-durability volatile --qos-depth 5",
+        "topic echo /run_state -n 1 --truncate-length 3",
+        "topic info /stress",
+        "topic hz /stress -d 1",
+        r#"topic pub -t 3 --rate 10 -w 0 /chatter std_msgs/msg/String {"data":"hello"}"#,
+        r#"topic pub -1 -w 0 /cmd_vel geometry_msgs/msg/Twist {"linear":{"x":2.0}}"#,
+        "node list",
+        "node info dem_simulator",
+        "param list",
+        "param list /dem_simulator",
+        "param get /dem_simulator threads",
+        "param set /emt_inversion use_sim_time false",
+        "interface show geometry_msgs/msg/Twist",
+        "interface show std_srvs/srv/SetBool",
+    ] {
+        let ended = lab.run(&line.split(' ').collect::<Vec<_>>());
+        assert!(
+            ended.code == Some(0) && !ended.stdout.is_empty(),
+            "{line}: {}{}",
+            ended.stdout,
+            ended.stderr
+        );
+    }
+
     let info = json(&lab.run(&["node", "info", "/servo_controller", "--format", "json"]));
     assert_eq!(info["publishers"]["/strain_rate"], "grainlab_msgs/msg/StrainRate");
     assert_eq!(info["subscriptions"]["/stress"], "grainlab_msgs/msg/Stress");
@@ -87,10 +116,12 @@ fn commands_show_and_set_what_a_running_laboratory_has() {
     let unknown = lab.run(&["param", "get", "/dem_simulator", "seeds"]);
     assert!(unknown.code == Some(1) && unknown.stderr.contains("seed"), "{}", unknown.stderr);
     assert_eq!(lab.run(&["param", "set", "/dem_simulator", "use_sim_time", "true"]).code, Some(0));
-    let dumped = lab.run(&["param", "dump", "/dem_simulator"]).stdout;
-    assert!(dumped.contains("use_sim_time: true"), "{dumped}");
-    let answer = lab.run(&["service", "call", "/recorder/get_parameters", "{names: [append]}"]);
-    assert_eq!(json(&answer)["values"][0]["boolean_value"], false);
+    assert_eq!(lab.run(&["param", "get", "/dem_simulator", "use_sim_time"]).stdout, "true\n");
+    assert_eq!(lab.run(&["param", "get", "/recorder", "append"]).stdout, "false\n");
+    let parameters = json(&lab.run(&["param", "list", "--format", "json"]));
+    for (node, parameter) in [("/dem_simulator", "threads"), ("/recorder", "append")] {
+        assert!(parameters[node].as_array().unwrap().contains(&parameter.into()), "{node}: {parameters}");
+    }
 
     let states = json(&lab.run(&["node", "state", "--format", "json"]));
     for state in states.as_array().unwrap() {
@@ -216,7 +247,7 @@ fn the_doctor_is_right_about_policies_of_another_dds_that_are_not_sent() {
             .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tools/qos_pairs.py"))
             .env("ROS_DOMAIN_ID", lab.domain.to_string()),
     );
-    system_tests::lab::until("twelve topics", || lab.run(&["topic", "list", "-c"]).stdout.trim() == "12");
+    system_tests::wait::until("twelve topics", || lab.run(&["topic", "list"]).stdout.lines().count() == 12);
     let doctor = json(&lab.run(&["doctor", "--format", "json"]));
     std::thread::sleep(Duration::from_secs(3));
     pairs.signal(libc::SIGTERM);

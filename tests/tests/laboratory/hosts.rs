@@ -1,15 +1,16 @@
-//! One laboratory over several hosts: the same bytes as on one.
+//! One laboratory over several hosts: the same bytes as on one. On one host it needs only loopback, sends only to loopback, and
+//! receives only from loopback.
 
-use grainlab_recordings::{Recording, Selection};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
-use system_tests::bodies::{assert_same, assert_same_under, distinct};
-use system_tests::hosts::Hosts;
-use system_tests::lab::{LIMIT, Lab, golden, until};
+use system_tests::bodies::{assert_same_under, distinct, recorded};
+use system_tests::hosts::{self, Hosts};
+use system_tests::lab::{Lab, example, golden, grainlab, undisturbed};
 use system_tests::process::{Ended, Process, handles};
 use system_tests::python;
+use system_tests::wait::{LIMIT, until};
 
 /// Each node and its host. The order is that of starting; the recorder ends last.
 type Places = [(&'static str, &'static str); 5];
@@ -78,24 +79,16 @@ impl Run {
         Self { nodes: places.map(node_of).into(), folder, namespace }
     }
 
-    /// Number of recorded messages of a topic so far.
-    fn recorded(&self, topic: &str) -> usize {
-        let topic = format!("{}{topic}", self.namespace);
-        let Ok(recording) = Recording::open(&self.folder) else { return 0 };
-        recording.messages(&Selection::topics([topic.as_str()])).map_or(0, Iterator::count)
-    }
-
     /// Waits until so many messages of a topic are recorded.
     fn until_recorded(&mut self, topic: &str, messages: usize) {
         let begin = Instant::now();
-        while self.recorded(topic) < messages {
+        let name = format!("{}{topic}", self.namespace);
+        while recorded(&self.folder, &name) < messages {
             let ended = self.nodes.iter_mut().find_map(|(node, process)| (!process.runs()).then_some(*node));
             if ended.is_some() || begin.elapsed() > LIMIT / 2 {
-                let recorded = self.recorded(topic);
+                let recorded = recorded(&self.folder, &name);
                 let outputs = self.end();
-                panic!(
-                    "{recorded} of {messages} messages of {topic}; ended by itself: {ended:?}\n{outputs:#?}"
-                );
+                panic!("{recorded} of {messages} of {name}; ended by itself: {ended:?}\n{outputs:#?}");
             }
             std::thread::sleep(Duration::from_millis(50));
         }
@@ -118,10 +111,7 @@ impl Run {
         for (node, code, stderr) in self.end() {
             assert_eq!(code, Some(0), "{node}\n{stderr}");
         }
-        match self.namespace {
-            "" => assert_same(expected, &self.folder),
-            namespace => assert_same_under(expected, &self.folder, namespace),
-        }
+        assert_same_under(expected, &self.folder, self.namespace);
     }
 }
 
@@ -132,76 +122,70 @@ fn by_multicast() -> BTreeMap<&'static str, [(&'static str, &'static str); 1]> {
     ["left", "right", "third"].map(|host| (host, SUBNET)).into()
 }
 
-#[test]
-fn two_hosts_that_find_each_other_by_multicast_give_the_bytes_of_one() {
+/// Runs the small scene over the hosts `left` and `right`, and expects the bytes of one host.
+fn two_hosts<const N: usize>(prepare: impl Fn(&Hosts), places: Places, variables: [[(&str, &str); N]; 2]) {
     let lab = Lab::new();
     let Some(hosts) = Hosts::new(&lab, &["left", "right"]) else { return };
+    prepare(&hosts);
     let scene = golden("scenes/tiny.toml");
-    let expected = lab.launch(&scene, &[]);
-    let run = Run::start(&hosts, &lab, ("both", ""), (&scene, MEASURED_ELSEWHERE), &by_multicast());
-    run.finish_as(&expected);
+    let [left, right] = variables;
+    let variables = [("left", left), ("right", right)].into();
+    Run::start(&hosts, &lab, ("both", ""), (&scene, places), &variables).finish_as(&undisturbed(&[]));
+}
+
+#[test]
+fn two_hosts_that_find_each_other_by_multicast_give_the_bytes_of_one() {
+    two_hosts(|_| {}, MEASURED_ELSEWHERE, [SUBNET, SUBNET]);
 }
 
 #[test]
 fn two_hosts_without_multicast_find_each_other_as_static_peers() {
-    let lab = Lab::new();
-    let Some(hosts) = Hosts::new(&lab, &["left", "right"]) else { return };
-    for host in ["left", "right"] {
-        hosts.set(&format!("ip -n {host} link set eth0 multicast off"));
-        // The switch drops what is sent all the same.
-        hosts.set(&format!("bridge link set dev to-{host} mcast_flood off"));
-    }
-    let scene = golden("scenes/tiny.toml");
-    let expected = lab.launch(&scene, &[]);
-    let peers = [
-        ("left", [("ROS_STATIC_PEERS", "192.0.2.2")]),
-        ("right", [("ROS_STATIC_PEERS", "192.0.2.77;192.0.2.1")]),
-    ];
-    let run = Run::start(&hosts, &lab, ("both", ""), (&scene, DRIVEN_FROM_ELSEWHERE), &peers.into());
-    run.finish_as(&expected);
+    let without_multicast = |hosts: &Hosts| {
+        for host in ["left", "right"] {
+            hosts.set(&format!("ip -n {host} link set eth0 multicast off"));
+            // The switch drops what is sent all the same.
+            hosts.set(&format!("bridge link set dev to-{host} mcast_flood off"));
+        }
+    };
+    let peers = ["192.0.2.2", "192.0.2.77;192.0.2.1"].map(|peers| [("ROS_STATIC_PEERS", peers)]);
+    two_hosts(without_multicast, DRIVEN_FROM_ELSEWHERE, peers);
 }
 
 #[test]
 fn a_host_with_static_peers_and_one_that_multicasts_exchange_data() {
-    let lab = Lab::new();
-    let Some(hosts) = Hosts::new(&lab, &["left", "right"]) else { return };
-    let scene = golden("scenes/tiny.toml");
-    let expected = lab.launch(&scene, &[]);
-    let ranges = [("left", [("ROS_STATIC_PEERS", "192.0.2.2")]), ("right", SUBNET)];
-    let run = Run::start(&hosts, &lab, ("both", ""), (&scene, DRIVEN_FROM_ELSEWHERE), &ranges.into());
-    run.finish_as(&expected);
+    two_hosts(|_| {}, DRIVEN_FROM_ELSEWHERE, [[("ROS_STATIC_PEERS", "192.0.2.2")], SUBNET]);
 }
 
 #[test]
 fn a_link_that_is_cut_for_a_while_changes_no_byte() {
-    // More exchanges than the scene has, so that the run is under way for a while.
-    let text = std::fs::read_to_string(golden("scenes/tiny.toml")).unwrap();
-    let text = text.replace("control_period = 10\n", "control_period = 2\n");
     let cuts = [
         ("ip -n right link set eth0 down", "ip -n right link set eth0 up"),
         ("ip link set to-right down", "ip link set to-right up"),
         // Datagrams are lost, and neither host is told.
         ("bridge link set dev to-right state 0", "bridge link set dev to-right state 3"),
     ];
+    if !hosts::can_isolate() {
+        return;
+    }
+    // More exchanges than the scene has, so that the run is under way for a while.
     let first = Lab::new();
-    let scene = first.folder().join("long.toml");
-    std::fs::write(&scene, text).unwrap();
-    let Some(_) = Hosts::new(&first, &["left", "right"]) else { return };
+    let scene = first.tiny_with("long.toml", &[("control_period = 10\n", "control_period = 2\n")]);
     let expected = first.launch(&scene, &[]);
     let exchanges = distinct(&expected, "/stress").len();
+    let lab = Lab::new();
+    let Some(hosts) = Hosts::new(&lab, &["left", "right"]) else { return };
+    let places = (scene.as_path(), DRIVEN_FROM_ELSEWHERE);
+    let mut run = Run::start(&hosts, &lab, ("both", ""), places, &by_multicast());
     for (cut, restore) in cuts {
-        let lab = Lab::new();
-        let Some(hosts) = Hosts::new(&lab, &["left", "right"]) else { return };
-        let places = (scene.as_path(), DRIVEN_FROM_ELSEWHERE);
-        let mut run = Run::start(&hosts, &lab, ("both", ""), places, &by_multicast());
-        run.until_recorded("/stress", 100);
+        let begun = recorded(&run.folder, "/stress");
+        run.until_recorded("/stress", begun + 100);
         hosts.set(cut);
         std::thread::sleep(Duration::from_secs(5));
-        let recorded = distinct(&run.folder, "/stress").len();
-        assert!(recorded < exchanges, "{cut}: the run was over");
+        let done = distinct(&run.folder, "/stress").len();
+        assert!(done < exchanges, "{cut}: the run was over");
         hosts.set(restore);
-        run.finish_as(&expected);
     }
+    run.finish_as(&expected);
 }
 
 #[test]
@@ -209,10 +193,8 @@ fn two_laboratories_of_one_domain_on_three_hosts_come_to_their_own_results() {
     let lab = Lab::new();
     let Some(hosts) = Hosts::new(&lab, &["left", "right", "third"]) else { return };
     let scene = golden("scenes/tiny.toml");
-    let other = lab.folder().join("other.toml");
-    let text = std::fs::read_to_string(&scene).unwrap();
-    std::fs::write(&other, text.replace("seed = 3\n", "seed = 4\n")).unwrap();
-    let expected = [&scene, &other].map(|scene| lab.launch(scene, &[]));
+    let other = lab.tiny_with("other.toml", &[("seed = 3\n", "seed = 4\n")]);
+    let expected = [undisturbed(&[]), undisturbed(&["--seed", "4"])];
     let shared = |own: &'static str| {
         [
             ("recorder", own),
@@ -256,10 +238,8 @@ impl<'a> Tunnel<'a> {
         let run = |host: &str, script: &str| {
             std::fs::create_dir_all(lab.folder().join(host)).unwrap();
             let script = format!("cd {host}\n{script}");
-            let ended =
-                Process::start(&mut hosts.on(host, Command::new("sh").args(["-ec", &script]))).ended(LIMIT);
-            assert_eq!(ended.code, Some(0), "{script}\n{}", ended.stderr);
-            ended.stdout.trim().to_owned()
+            let ended = Process::start(&mut hosts.on(host, Command::new("sh").args(["-ec", &script])));
+            ended.ended(LIMIT).assert_code(0).stdout.trim().to_owned()
         };
         let public = ["left", "right"].map(|host| run(host, recipe("sh", 1)));
         for (host, own, other) in [("left", 1, 2), ("right", 2, 1)] {
@@ -298,11 +278,9 @@ fn overheard(hosts: &Hosts, meanwhile: impl FnOnce()) -> Option<serde_json::Valu
     until("the third host listens", || handles(listener.pid(), libc::SIGTERM));
     let begin = Instant::now();
     meanwhile();
-    listener.signal(libc::SIGTERM);
-    let Ended { code, stdout, stderr } = listener.ended(LIMIT);
-    assert_eq!(code, Some(0), "{stderr}");
-    eprintln!("{:.1?}: {stdout}", begin.elapsed());
-    Some(serde_json::from_str(&stdout).unwrap())
+    let heard = listener.ended_by(libc::SIGTERM).assert_code(0).json();
+    eprintln!("{:.1?}: {heard}", begin.elapsed());
+    Some(heard)
 }
 
 #[test]
@@ -313,7 +291,8 @@ fn over_wireguard_two_hosts_give_the_bytes_of_one_and_a_third_reads_nothing() {
     hosts.set("ip link set switch type bridge ageing_time 0");
     let Some(tunnel) = Tunnel::new(&hosts, &lab) else { return };
     let scene = golden("scenes/tiny.toml");
-    let expected = lab.launch(&scene, &[]);
+    // Not while somebody listens.
+    let expected = undisturbed(&[]);
     let run = |interface, peers: [&'static str; 2]| {
         let variables = |peer| [("ROS_STATIC_PEERS", peer), ("GRAINLAB_INTERFACE", interface)];
         let variables = [("left", variables(peers[0])), ("right", variables(peers[1]))].into();
@@ -338,10 +317,112 @@ fn over_wireguard_two_hosts_give_the_bytes_of_one_and_a_third_reads_nothing() {
 
     // A tunnel that is down is an error, and nothing goes around it.
     drop(tunnel);
-    let refused = node("left", inside[0], "wg0").ended(LIMIT);
-    assert_eq!(refused.code, Some(2), "{}", refused.stderr);
-    assert!(refused.stderr.contains("GRAINLAB_INTERFACE=\"wg0\""), "{}", refused.stderr);
+    node("left", inside[0], "wg0").ended(LIMIT).assert_code(2).assert_says(&["GRAINLAB_INTERFACE=\"wg0\""]);
 
     let heard = overheard(&hosts, || run("eth0", ["192.0.2.2", "192.0.2.1"])).unwrap();
     assert!(heard["clear"].as_u64() > Some(1000) && heard["wireguard"] == 0, "{heard}");
 }
+
+/// Runs a shell script in a separate network namespace, with the binary as `$0`, the small scene as `$1` and
+/// the sender of [`SPRAYS`] datagrams as `$2`; `None`, with a message, without the right to create one.
+fn in_namespace(lab: &Lab, script: &str) -> Option<Ended> {
+    if !hosts::can_isolate() {
+        return None;
+    }
+    let mut command = Command::new("unshare");
+    command
+        .args(["-n", "sh", "-ec", script])
+        .arg(grainlab())
+        .arg(golden("scenes/tiny.toml"))
+        .arg(example("spray"))
+        .arg(SPRAYS.to_string())
+        .current_dir(lab.folder())
+        .env("NO_COLOR", "1");
+    Some(Process::start(&mut command).ended(LIMIT))
+}
+
+#[test]
+fn a_run_works_where_only_loopback_exists_and_no_packet_leaves_it_for_another_default_route() {
+    let lab = Lab::new();
+    let script = r#"
+        ip link set lo up
+        "$0" launch --scene "$1" --out alone >&2
+        ip link add away0 type veth peer name away1
+        for i in away0 away1; do sysctl -qw net.ipv6.conf.$i.disable_ipv6=1; done
+        ip addr add 192.0.2.1/24 dev away0
+        ip link set away0 up
+        ip link set away1 up
+        ip route add default dev away0
+        "$0" launch --scene "$1" >&2
+        ip -s link show away0"#;
+    let Some(ended) = in_namespace(&lab, script).map(|ended| ended.assert_code(0)) else { return };
+    let sent = ended.stdout.lines().skip_while(|l| !l.contains("TX:")).nth(1).unwrap_or("").trim();
+    assert!(
+        sent.starts_with("0 "),
+        "bytes and packets sent on the other interface: {sent}\n{}",
+        ended.stdout
+    );
+}
+
+/// Another host, by the name of its interface on this host, that sends to every port of domain 0. Prints the
+/// counters of this namespace and the memory of a node before and after. `RANGE` is the discovery range of
+/// the node, `LO` a setting of loopback.
+const SPRAYED: &str = "
+    ip link set lo up $LO
+    unshare -n sleep 600 & peer=$!
+    trap 'kill $peer $node' EXIT
+    until [ \"$(readlink /proc/$peer/ns/net)\" != \"$(readlink /proc/$$/ns/net)\" ]; do sleep .1; done
+    ip link add here type veth peer name there
+    ip link set there netns $peer
+    ip addr add 192.0.2.1/24 dev here
+    ip link set here up
+    nsenter -t $peer -n sh -ec 'ip addr add 192.0.2.2/24 dev there; ip link set there up; ip route add default dev there'
+    ROS_DOMAIN_ID=0 ROS_AUTOMATIC_DISCOVERY_RANGE=$RANGE \"$0\" run emt_inversion >&2 & node=$!
+    until ss -lun | grep -q :7411; do sleep .1; done
+    memory() { grep VmRSS /proc/$node/status; }
+    until [ \"$before\" = \"$(memory)\" ]; do before=$(memory); sleep 1; done
+    count() { grep '^Udp: [0-9]' /proc/net/snmp; memory; }
+    count
+    nsenter -t $peer -n \"$2\" \"$3\" >&2
+    sleep 1
+    until [ -z \"$(ss -lunH | awk '$2 > 0')\" ]; do sleep .1; done
+    count
+    kill -0 $node";
+
+/// Datagrams that reached a socket, that reached none, and memory growth of the node in MB.
+fn sprayed(range: &str, lo: &str) -> Option<[u64; 3]> {
+    let lab = Lab::new();
+    let ended =
+        in_namespace(&lab, &format!("RANGE={range} LO='{lo}' node= before=; {SPRAYED}"))?.assert_code(0);
+    let column = |n: usize, what: &str| -> Vec<u64> {
+        let lines = ended.stdout.lines().filter(|l| l.starts_with(what));
+        lines.map(|l| l.split_whitespace().nth(n).and_then(|v| v.parse().ok()).unwrap_or(0)).collect()
+    };
+    let grown = |n, what: &str| match column(n, what)[..] {
+        [before, after] => after.saturating_sub(before),
+        _ => panic!("no two counts of {what}: {}", ended.stdout),
+    };
+    Some([grown(1, "Udp:"), grown(2, "Udp:"), grown(1, "VmRSS:") / 1024])
+}
+
+#[test]
+fn nothing_from_another_host_reaches_a_node_that_stays_on_this_one() {
+    for lo in ["multicast off", "multicast on"] {
+        let Some([reached, refused, grown]) = sprayed("LOCALHOST", lo) else { return };
+        // Half of them are sent to the multicast group, which this host has not joined there, and are not
+        // counted.
+        assert!(refused > SPRAYS / 4, "only {refused} datagrams came, loopback {lo}");
+        assert!(reached < 100, "{reached} datagrams of {SPRAYS} reached a socket, loopback {lo}");
+        assert!(grown < 10, "the node grew by {grown} MB, loopback {lo}");
+    }
+}
+
+#[test]
+fn a_flood_from_another_host_does_not_exhaust_the_memory_of_a_node_that_receives_it() {
+    let Some([reached, _, grown]) = sprayed("SUBNET", "multicast off") else { return };
+    assert!(reached > SPRAYS / 200, "only {reached} datagrams of {SPRAYS} came");
+    assert!(grown < 60, "the node grew by {grown} MB");
+}
+
+/// Datagrams that are sent to the ports of a domain.
+const SPRAYS: u64 = 50_000;

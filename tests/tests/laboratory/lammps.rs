@@ -1,12 +1,13 @@
 //! LAMMPS on two processes as the engine of a laboratory.
 
-use grainlab_msgs::{from_cdr, msg};
+use grainlab_msgs::msg;
 use std::path::Path;
 use std::time::Duration;
-use system_tests::bodies::distinct;
-use system_tests::lab::{Lab, appeared, golden, until};
+use system_tests::bodies::{decoded, distinct};
+use system_tests::lab::{Lab, appeared, golden, summary};
 use system_tests::process::{children, runs, send};
 use system_tests::python;
+use system_tests::wait::{until, until_within};
 
 /// Time limit of a run: MPI waits in a loop, and processes that share a core with others are many times slower.
 const PATIENCE: Duration = Duration::from_secs(900);
@@ -23,14 +24,12 @@ fn below(pid: u32) -> Vec<u32> {
 }
 
 fn engines(run: &Path) -> Vec<String> {
-    let text = std::fs::read_to_string(run.join("summary.json")).unwrap();
-    let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
-    let ranges = summary["engines"].as_array().cloned().unwrap_or_default();
+    let ranges = summary(run)["engines"].as_array().cloned().unwrap_or_default();
     ranges.iter().map(|range| range["engine"].as_str().unwrap().to_owned()).collect()
 }
 
 fn last_report(run: &Path) -> msg::PackingReport {
-    from_cdr(distinct(run, "/packing_report").last().unwrap()).unwrap()
+    decoded(run, "/packing_report").pop().unwrap()
 }
 
 #[test]
@@ -39,18 +38,20 @@ fn lammps_ends_with_a_killed_run_and_its_files_are_removed() {
     let lab = Lab::new();
     let scene = golden("scenes/pressed.toml");
     let given = ["launch", "--one-process", "--engine", "lammps", "--engine-command", &command, "--scene"];
-    let launcher = lab.start(&[given.as_slice(), &[&scene.to_string_lossy()]].concat());
+    // Its last phase lasts until the run is killed.
+    let long = ["--set", "phase.settle.until.unbalanced=1e-12", "--set", "phase.settle.until.timeout=1e9"];
+    let launcher = lab.start(&[given.as_slice(), &[&scene.to_string_lossy()], &long].concat());
     let begins = format!("grainlab-lammps-{}-", launcher.pid());
     let files = || {
         let all = std::fs::read_dir(std::env::temp_dir()).unwrap().flatten();
         all.filter(|entry| entry.file_name().to_string_lossy().starts_with(&begins)).count()
     };
-    until("LAMMPS has its first packing", || lab.recorded() > 60);
+    until_within(PATIENCE, "LAMMPS has its first packing", || lab.recorded() > 60);
     let processes = below(launcher.pid());
     assert!(files() == 1 && processes.len() > 2);
     launcher.signal(libc::SIGKILL);
-    until("processes of LAMMPS end", || !processes.iter().any(|pid| runs(*pid)));
-    until("files are removed", || files() == 0);
+    until_within(PATIENCE, "processes of LAMMPS end", || !processes.iter().any(|pid| runs(*pid)));
+    until_within(PATIENCE, "files are removed", || files() == 0);
 }
 
 #[test]
@@ -64,14 +65,13 @@ fn a_run_with_lammps_goes_on_after_one_of_its_processes_ended_and_with_our_engin
     let lab = Lab::new();
     let path = scene.to_string_lossy();
     let given = [&["launch", "--scene", &path], with.as_slice()].concat();
-    let ended = lab.start(&given).ended(PATIENCE);
-    assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
+    lab.start(&given).ended(PATIENCE).assert_code(0);
     let whole = lab.last_run();
     assert!(
         matches!(engines(&whole).as_slice(), [one] if one.starts_with("lammps ") && one.ends_with(", 2 ranks"))
     );
-    let of_last_phase = |body: &Vec<u8>| from_cdr::<msg::Stress>(body).unwrap().phase == 3;
-    let last_phase = distinct(&whole, "/stress").iter().position(of_last_phase).unwrap();
+    let requests: Vec<msg::Stress> = decoded(&whole, "/stress");
+    let last_phase = requests.iter().position(|request| request.phase == 3).unwrap();
     // Both engines press the same gas to packings that differ as those of two seeds do.
     let (theirs, ours) = (last_report(&whole), last_report(&Lab::new().launch(&scene, &["--no-report"])));
     assert!((theirs.solid_fraction - ours.solid_fraction).abs() < 0.01);
@@ -80,29 +80,25 @@ fn a_run_with_lammps_goes_on_after_one_of_its_processes_ended_and_with_our_engin
     let start = |lab: &Lab| {
         let launcher = lab.start(&given);
         let simulator = appeared(&launcher, "run dem_simulator");
-        while lab.recorded() < last_phase + 30 {
-            std::thread::sleep(Duration::from_millis(20));
-        }
+        until_within(PATIENCE, "the last phase", || lab.recorded() >= last_phase + 30);
         (launcher, below(simulator))
     };
     let lab = Lab::new();
     let (launcher, processes) = start(&lab);
     send(*processes.last().unwrap(), libc::SIGKILL);
-    let ended = launcher.ended(PATIENCE);
-    assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
-    assert!(ended.stderr.contains("the run continues from the last packing recorded"), "{}", ended.stderr);
+    let continues = "the run continues from the last packing recorded";
+    launcher.ended(PATIENCE).assert_code(0).assert_says(&[continues]);
     assert!(distinct(&whole, "/stress") == distinct(&lab.last_run(), "/stress"));
     until("processes of LAMMPS end", || !processes.iter().any(|pid| runs(*pid)));
     // An interrupted run goes on with another engine, and the results name both.
     let lab = Lab::new();
     let (launcher, _) = start(&lab);
     launcher.signal(libc::SIGINT);
-    assert_eq!(launcher.ended(PATIENCE).code, Some(130));
+    launcher.ended(PATIENCE).assert_code(130);
     let run = lab.last_run();
     let resumed = lab.run(&["launch", "--resume", &run.to_string_lossy(), "--engine", "grainlab"]);
-    assert_eq!(resumed.code, Some(0), "{}\n{}", resumed.stdout, resumed.stderr);
+    resumed.assert_code(0).assert_prints(&["; grainlab, packings from step"]);
     assert!(
         matches!(engines(&run).as_slice(), [first, last] if first.starts_with("lammps") && last == "grainlab")
     );
-    assert!(resumed.stdout.contains("; grainlab, packings from step"), "{}", resumed.stdout);
 }

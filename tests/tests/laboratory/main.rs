@@ -1,35 +1,22 @@
-//! Claims about the whole laboratory, in one binary: each module has a subject.
+//! Claims about the whole laboratory, in one binary: each module is what a user does, or what happens meanwhile.
 
 mod acoustic;
 mod bad_input;
 mod bag_tools;
 mod campaigns;
 mod crashes;
+mod disturbed;
 mod exports;
-mod foxglove;
 mod graph;
 mod hosts;
-mod instrument;
-mod interrupted;
-mod isolation;
 mod lammps;
-mod large_packings;
-mod live;
-mod main_job;
-mod messages;
-mod namespaces;
-mod new_nodes;
-mod one_process;
+mod launch;
 mod other_dds;
+mod pages;
 mod paper;
-mod posterior_draws;
-mod python_module;
-mod recovery;
-mod repeatable;
+mod python;
 mod replay;
-mod report;
-mod ros2_words;
+mod resume;
 mod ros_launch;
-mod stopped;
 mod strangers;
 mod tables;

@@ -1,36 +1,50 @@
-//! An independent DDS implementation, CycloneDDS from Python, that has only the message files in common with grainlab.
+//! Programs of other makers that have only the message files in common with grainlab: CycloneDDS from Python as a listener, a servo,
+//! a client of parameters and an instrument, and the nodes that `grainlab new node` begins.
 
 use grainlab_any_message::{Schema, Shown};
+use grainlab_emt_inversion::{Settings, microstructure_of_speeds};
+use grainlab_msgs::msg::{Estimate, Microstructure, WaveSpeeds};
 use grainlab_msgs::{TypeInfo, topics};
 use grainlab_node_kit::{Bus, DdsBus, Names, Network};
 use grainlab_recordings::{Recording, Selection};
 use serde_json::Value;
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
-use system_tests::lab::{LIMIT, Lab, golden, until};
-use system_tests::process::{Ended, Process};
+use system_tests::bodies::decoded;
+use system_tests::lab::{Lab, golden, grainlab, scene_path, summary};
+use system_tests::process::Process;
 use system_tests::python;
+use system_tests::wait::{LIMIT, until};
 
-fn tool(lab: &Lab, python: &Path, script: &str, arguments: &[&str]) -> Process {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tools").join(script);
-    Process::start(
-        Command::new(python)
-            .arg(script)
-            .args(arguments)
-            .env("ROS_DOMAIN_ID", lab.domain.to_string())
-            .env_remove("CYCLONEDDS_URI"),
-    )
+fn here(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-fn json(ended: &Ended) -> Value {
-    assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
-    serde_json::from_str(&ended.stdout).unwrap()
+/// Starts a program of another maker in the folder and domain of the laboratory, on loopback.
+fn start(lab: &Lab, command: &mut Command) -> Process {
+    let plain = lab.command(&[]);
+    for (name, value) in plain.get_envs() {
+        match value {
+            Some(value) => command.env(name, value),
+            None => command.env_remove(name),
+        };
+    }
+    Process::start(command.current_dir(lab.folder()).env_remove("CYCLONEDDS_URI"))
+}
+
+/// Starts a script of `tests/tools`.
+fn tool(lab: &Lab, python: &Path, script: &str, arguments: &[&str]) -> Process {
+    start(lab, Command::new(python).arg(here("tools").join(script)).args(arguments))
+}
+
+fn json(process: Process) -> Value {
+    process.ended(LIMIT).assert_code(0).json()
 }
 
 /// The recorded messages of a topic as JSON, decoded by the definition of their type.
-fn recorded(run: &Path, topic: &str, info: &TypeInfo) -> Vec<Value> {
+fn recorded_json(run: &Path, topic: &str, info: &TypeInfo) -> Vec<Value> {
     let recording = Recording::open(run).unwrap();
     let schema = Schema::parse(info.type_name, info.definition).unwrap();
     let messages = recording.messages(&Selection::topics([topic])).unwrap();
@@ -65,7 +79,7 @@ fn another_dds_lists_the_nodes_and_reads_every_topic_field_by_field() {
     });
     drop(bus);
     let run = lab.launch(&golden("scenes/tiny.toml"), &[]);
-    let heard = json(&peer.ended(LIMIT));
+    let heard = json(peer);
 
     let nodes: BTreeSet<&str> = heard["nodes"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
     for node in ["/dem_simulator", "/servo_controller", "/fabric_analyzer", "/emt_inversion", "/recorder"] {
@@ -79,7 +93,7 @@ fn another_dds_lists_the_nodes_and_reads_every_topic_field_by_field() {
         let Some(messages) = heard["topics"][&name].as_array() else { continue };
         // A sample is one of the requests.
         let from = if *topic == topics::STRESS_SAMPLED { topics::STRESS } else { *topic };
-        let all = recorded(&run, &from.absolute_name(), &topic.info);
+        let all = recorded_json(&run, &from.absolute_name(), &topic.info);
         assert!(!messages.is_empty() || all.is_empty(), "nothing of {name} was received");
         for message in messages.iter().filter(|m| !of_recorder(m)) {
             assert!(all.contains(message), "{name}: received and not recorded: {message}");
@@ -91,13 +105,12 @@ fn another_dds_lists_the_nodes_and_reads_every_topic_field_by_field() {
 fn a_servo_on_another_dds_answers_ten_thousand_stresses_without_a_miss() {
     let Some(python) = python::with("cyclonedds") else { return };
     let lab = Lab::new();
-    let scene = format!("scene:={}", golden("scenes/endless.toml").display());
+    let scene = format!("scene:={}", scene_path("endless"));
     let simulator = lab.start(&["run", "dem_simulator", "--ros-args", "-p", &scene]);
-    let counts = json(&tool(&lab, &python, "cyclone_peer.py", &["servo", "10000"]).ended(LIMIT));
+    let counts = json(tool(&lab, &python, "cyclone_peer.py", &["servo", "10000"]));
     assert_eq!((counts["answered"].as_u64(), counts["missed"].as_u64()), (Some(10_000), Some(0)), "{counts}");
     assert!(counts["clocks"].as_u64() > Some(0), "{counts}");
-    simulator.signal(libc::SIGINT);
-    simulator.ended(LIMIT);
+    simulator.ended_by(libc::SIGINT);
 }
 
 #[test]
@@ -105,7 +118,7 @@ fn a_client_on_another_dds_reads_describes_and_sets_parameters() {
     let Some(python) = python::with("cyclonedds") else { return };
     let lab = Lab::new();
     let node = lab.start(&["run", "emt_inversion"]);
-    let ask = |arguments: &[&str]| json(&tool(&lab, &python, "parameter_client.py", arguments).ended(LIMIT));
+    let ask = |arguments: &[&str]| json(tool(&lab, &python, "parameter_client.py", arguments));
     let names = ask(&["/emt_inversion", "list"]);
     assert!(names.as_array().unwrap().iter().any(|n| n == "gamma_over_delta"), "{names}");
     let described = ask(&["/emt_inversion", "describe", "use_sim_time"]);
@@ -114,6 +127,189 @@ fn a_client_on_another_dds_reads_describes_and_sets_parameters() {
     assert_eq!(ask(&["/emt_inversion", "get", "use_sim_time"])["use_sim_time"], true);
     let refused = ask(&["/emt_inversion", "set", "models", "\"paper\""]);
     assert!(refused["reason"].as_str().unwrap().contains("read-only"), "{refused}");
-    node.signal(libc::SIGINT);
-    node.ended(LIMIT);
+    node.ended_by(libc::SIGINT);
+}
+
+/// The answer of the inversion to a message that the instrument has sent.
+fn expected(sent: &Value) -> Microstructure {
+    let sent: WaveSpeeds =
+        serde_json::from_value(sent.clone()).expect("the fields of our message, all of them");
+    assert!(sent.speeds.len() >= 5 && sent.density > 0.0, "{sent:?}");
+    microstructure_of_speeds(&sent, &Settings::default()).message
+}
+
+fn received(message: &Value) -> Microstructure {
+    serde_json::from_value(message.clone()).expect("the fields of our message, all of them")
+}
+
+#[test]
+fn an_instrument_of_another_vendor_receives_every_digit_of_its_microstructure() {
+    let Some(python) = python::with("cyclonedds") else { return };
+    let lab = Lab::new();
+    let script = here("../nodes/launch/instrument.sh");
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new("sh");
+        command.arg(&script).args(arguments).env("GRAINLAB", grainlab()).env("PYTHON", &python);
+        start(&lab, &mut command).ended(LIMIT).assert_code(0)
+    };
+    let whole = run(&["--json"]).json();
+    let answer = received(&whole["received"]);
+    assert_eq!(answer, expected(&whole["sent"]));
+    assert_eq!((answer.source.as_str(), answer.estimates.len()), ("wave_speeds", emt_models()));
+    // As text, one line per model, with the same numbers.
+    let printed = run(&[]).stdout;
+    for estimate in &answer.estimates {
+        let line = printed.lines().find(|l| l.split_whitespace().next() == Some(&estimate.model));
+        let line = line.unwrap_or_else(|| panic!("no line of {}:\n{printed}", estimate.model));
+        for value in estimate.k.iter().chain(&estimate.z) {
+            assert!(line.contains(&format!("{value:.4} +- ")), "{line}");
+        }
+    }
+}
+
+#[test]
+fn an_instrument_of_another_vendor_that_a_launch_file_lists_is_of_the_run_and_recorded() {
+    let Some(python) = python::with("cyclonedds") else { return };
+    let lab = Lab::new();
+    // The run begins when this program, which has its answer, reads packings too.
+    let folder = here("../nodes/launch");
+    let text = format!(
+        "import sys; sys.path.insert(0, {folder:?})\nimport instrument as i\ni.main()\n\
+         kind = i.message('grainlab_msgs/msg/Packing')\n\
+         packings = i.reader(i.participant(), 'packing', kind, i.LATCHED)\n\
+         while not packings.take(): i.time.sleep(0.01)\n"
+    );
+    let program = lab.write("listed.py", &text);
+    let program = format!("{} {}", python.display(), program.display());
+    let listed = format!("- executable:\n    cmd: {program}\n    name: instrument\n    output: screen\n");
+    let demo = include_str!("../../../nodes/launch/demo.launch.yaml");
+    let demo = demo.replace(" min_readers:=2 -p exit", " min_readers:=2 -p min_packing_readers:=3 -p exit");
+    assert!(demo.contains("min_packing_readers"));
+    lab.write("plugged.launch.yaml", &(demo + &listed));
+    let folder = lab.launch(&golden("scenes/tiny.toml"), &["plugged.launch.yaml"]);
+    assert_eq!(summary(&folder)["strangers"], serde_json::json!([]));
+    let sent: Vec<WaveSpeeds> = decoded(&folder, "/wave_speeds");
+    let answers: Vec<Microstructure> = decoded(&folder, "/microstructure");
+    let answers: Vec<_> = answers.into_iter().filter(|m| m.source == "wave_speeds").collect();
+    assert_eq!((sent.len(), answers.len()), (1, 1));
+    assert_eq!(answers[0], microstructure_of_speeds(&sent[0], &Settings::default()).message);
+}
+
+#[test]
+fn records_that_are_written_into_a_folder_are_picked_and_inverted_when_a_state_is_complete() {
+    let Some(python) = python::with("cyclonedds") else { return };
+    let lab = Lab::new();
+    let _node = lab.start(&["run", "emt_inversion"]);
+    let (from, folder) = (here("golden/beads"), lab.folder().join("records"));
+    std::fs::create_dir(&folder).unwrap();
+    let late = "p90-250kPa.csv";
+    for file in std::fs::read_dir(&from).unwrap().map(|f| f.unwrap().file_name()) {
+        if file != late {
+            std::fs::copy(from.join(&file), folder.join(&file)).unwrap();
+        }
+    }
+    let script = here("../nodes/launch/record_instrument.py");
+    let mut command = Command::new(&python);
+    command.arg(&script).arg(&folder).args(["--grain-shear-modulus", "29e9", "--poisson", "0.2", "--once"]);
+    let writer = std::thread::spawn(move || {
+        std::thread::sleep(std::time::Duration::from_secs(5));
+        std::fs::copy(from.join(late), folder.join(late)).unwrap();
+    });
+    let ended = start(&lab, command.env("GRAINLAB", grainlab())).ended(LIMIT).assert_code(0);
+    writer.join().unwrap();
+    let states: Vec<&str> = ended.stdout.lines().filter(|l| l.starts_with("beads ")).collect();
+    assert_eq!(states, ["beads 50e3 Pa", "beads 250e3 Pa"], "{}", ended.stdout);
+    let estimates = ended.stdout.lines().filter(|l| l.starts_with("free-contact") && l.ends_with("ok"));
+    assert_eq!(estimates.count(), 2, "{}", ended.stdout);
+}
+
+fn emt_models() -> usize {
+    Settings::default().models.len()
+}
+
+#[test]
+fn every_message_of_an_instrument_gets_its_own_answer_and_an_invalid_one_the_reason() {
+    let Some(python) = python::with("cyclonedds") else { return };
+    let lab = Lab::new();
+    let mut node = lab.start(&["run", "emt_inversion"]);
+    let said = json(tool(&lab, &python, "bad_instrument.py", &[]));
+    // The third instrument comes when the first two are answered, and does not take their answers for its own.
+    for case in ["good", "nameless", "other"] {
+        assert_eq!(received(&said[case]["received"]), expected(&said[case]["sent"]), "{case}");
+    }
+    assert_eq!(said["nameless"]["sent"]["axis"]["z"], 0.0);
+    assert_ne!(said["other"]["received"]["estimates"], said["nameless"]["received"]["estimates"]);
+    let reasons = [
+        "WaveSpeeds.speeds[2].speed = NaN is refused",
+        "WaveSpeeds.density = -1498.0 is refused",
+        "WaveSpeeds.|axis| = 2.0 is refused",
+        "WaveSpeeds.speeds[0].method = 250 is refused",
+        "WaveSpeeds.header.stamp.nanosec = 4294967295.0 is refused",
+    ];
+    let bad = said["bad"].as_array().unwrap();
+    assert_eq!(bad.len(), reasons.len());
+    for (bad, reason) in bad.iter().zip(reasons) {
+        let answer = received(&bad["received"]);
+        assert_eq!(answer.name, bad["name"].as_str().unwrap());
+        assert_eq!(answer.estimates.len(), emt_models());
+        for e in &answer.estimates {
+            assert!(e.status == Estimate::STATUS_UNKNOWN && e.warnings[0].starts_with(reason), "{e:?}");
+        }
+    }
+    assert_eq!(said["refused"], 7);
+    assert_eq!(said["again"]["estimates"], said["good"]["received"]["estimates"], "the node lives on");
+    assert!(node.runs());
+    let node = node.ended_by(libc::SIGINT).assert_code(0).assert_says(&reasons);
+    let node = node.assert_says(&["refused: grainlab_msgs/msg/WaveSpeeds: "]);
+    assert!(!node.stderr.contains("panicked"), "{}", node.stderr);
+}
+
+/// Runs a command in a new node's folder, with the domain of the laboratory.
+fn run_in(lab: &Lab, folder: &str, program: &Path, arguments: &[&str]) -> String {
+    let mut command = Command::new(program);
+    command.args(arguments).current_dir(lab.folder().join(folder));
+    command.envs(lab.command(&[]).get_envs().filter_map(|(name, value)| Some((name, value?))));
+    let target = grainlab().parent().and_then(Path::parent).unwrap().to_owned();
+    command.env("GRAINLAB", grainlab()).env("CARGO_TARGET_DIR", target);
+    Process::start(&mut command).ended(10 * LIMIT).assert_code(0).stdout
+}
+
+fn new(lab: &Lab, arguments: &[&str]) {
+    lab.run(&[&["new", "node"], arguments].concat()).assert_code(0);
+}
+
+#[test]
+fn an_instrument_and_a_servo_in_python_pass_the_tests_that_are_written_with_them() {
+    let Some(python) = python::with("cyclonedds, pytest") else { return };
+    let lab = Lab::new();
+    for (name, kind) in [("my_probe", "--python"), ("my_servo", "--servo")] {
+        new(&lab, &[name, kind]);
+        run_in(&lab, name, &python, &["-m", "pytest", "-q", "-p", "no:cacheprovider"]);
+    }
+    lab.run(&["new", "node", "my_probe"]).assert_code(2).assert_says(&["exists"]);
+    // The package of the types, installed beside nothing else.
+    let install = ["-m", "pip", "install", "-q", "--no-deps", "--target", "../types", "./msgs"];
+    run_in(&lab, "my_probe", &python, &install);
+    let import = "import sys; sys.path.insert(0, 'types'); import grainlab_msgs as g; assert 'types' in g.__file__; \
+                  print(g.message('grainlab_msgs/msg/Stress')().mode, g.message('sensor_msgs/msg/Imu')())";
+    assert!(run_in(&lab, ".", &python, &["-c", import]).starts_with("[0, 0, 0, 0, 0, 0]"));
+}
+
+#[test]
+fn a_node_in_rust_is_a_crate_of_its_own_that_builds_and_receives_its_answer() {
+    let lab = Lab::new();
+    new(&lab, &["my_node", "--rust"]);
+    // The versions, the profile and so the built libraries of this workspace: a new build of all takes minutes.
+    let top = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let (folder, read) =
+        (lab.folder().join("my_node"), |path: PathBuf| std::fs::read_to_string(path).unwrap());
+    std::fs::copy(top.join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
+    let workspace = read(top.join("Cargo.toml"));
+    let profile = workspace.find("[profile.release]").map(|at| &workspace[at..]).unwrap();
+    let profile: Vec<&str> = profile.lines().filter(|line| !line.starts_with("grainlab_")).collect();
+    let manifest = read(folder.join("Cargo.toml")) + &profile.join("\n");
+    std::fs::write(folder.join("Cargo.toml"), manifest).unwrap();
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let out = run_in(&lab, "my_node", Path::new(&cargo), &["test", "--release", "--offline"]);
+    assert!(out.contains("the_inversion_answers ... ok"), "{out}");
 }

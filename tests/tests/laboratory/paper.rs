@@ -1,9 +1,10 @@
-//! The paper and an independent code, by the commands of the README.
+//! The paper, an independent code, and programs that analyse posteriors, by the commands of the README.
 
 use std::time::Duration;
 
 use serde_json::Value;
-use system_tests::lab::{Lab, golden};
+use system_tests::lab::{Lab, golden, json_file};
+use system_tests::python;
 
 #[test]
 fn invert_reproduces_table_iii_from_the_moduli_it_implies() {
@@ -16,49 +17,34 @@ fn invert_reproduces_table_iii_from_the_moduli_it_implies() {
         let at = header.iter().position(|h| *h == name).unwrap_or_else(|| panic!("no column {name}"));
         row[at].parse().unwrap()
     };
-    let mut rows = 0;
-    for line in lines {
-        let row: Vec<&str> = line.split(',').collect();
-        for (model, theta) in [("ratio", "theta_pa"), ("ratio-as-printed", "theta_printed_pa")] {
-            let given = |name: &str| format!("{:e}", column(&row, name));
-            let arguments = [
-                "invert".to_string(),
-                format!("--g12={}", given("g12_pa")),
-                format!("--g13={}", given("g13_pa")),
-                format!("--theta={}", given(theta)),
-                format!("--pressure={:e}", 1e3 * column(&row, "p_kpa")),
-                format!("--gamma-over-delta={}", given("gamma_over_delta")),
-                format!("--model={model}"),
-                "--format=json".to_string(),
-            ];
-            let ended = lab.run(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
-            assert_eq!(ended.code, Some(0), "{line}\n{}", ended.stderr);
-            let answer: Value = serde_json::from_str(&ended.stdout).unwrap();
-            let result = &answer["results"][0];
-            assert_eq!(result["model"], model);
-            for key in ["k", "k_hat", "eps"] {
-                let (found, printed) = (result[key].as_f64().unwrap(), column(&row, key));
-                assert!((found - printed).abs() < 1e-6, "{model} {key} of {line}: {found}");
-            }
-        }
-        rows += 1;
-    }
-    assert_eq!(rows, 16);
-    let all = lab.run(&["invert", "--table", &table.to_string_lossy(), "--format", "csv"]);
-    assert_eq!(all.code, Some(0), "{}", all.stderr);
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows.len(), 16);
+    let all = lab.run(&["invert", "--table", &table.to_string_lossy(), "--format", "csv"]).assert_code(0);
     let mut results = all.stdout.lines().map(|l| l.split(',').collect::<Vec<_>>());
     let names = results.next().unwrap();
     let cell = |row: &[&str], name: &str| row[names.iter().position(|n| *n == name).unwrap()].to_owned();
     let results: Vec<Vec<&str>> = results.collect();
-    for model in ["ratio", "ratio-as-printed"] {
+    for (model, theta) in [("ratio", "theta_pa"), ("ratio-as-printed", "theta_printed_pa")] {
         let of_model: Vec<_> = results.iter().filter(|r| cell(r, "model") == model).collect();
         assert_eq!(of_model.len(), 16, "{model}:\n{}", all.stdout);
-        for (line, found) in text.lines().filter(|l| !l.starts_with('#')).skip(1).zip(of_model) {
-            let row: Vec<&str> = line.split(',').collect();
-            assert_eq!(cell(found, "sample"), row[0]);
+        for (row, of_table) in rows.iter().zip(of_model) {
+            let given = |flag: &str, name: &str| format!("--{flag}={:e}", column(row, name));
+            let ended = lab.run(&[
+                "invert",
+                "--format=json",
+                &format!("--model={model}"),
+                &given("g12", "g12_pa"),
+                &given("g13", "g13_pa"),
+                &given("theta", theta),
+                &given("gamma-over-delta", "gamma_over_delta"),
+                &format!("--pressure={:e}", 1e3 * column(row, "p_kpa")),
+            ]);
+            let by_flags = &ended.assert_code(0).json()["results"][0];
+            assert_eq!((&by_flags["model"], cell(of_table, "sample").as_str()), (&model.into(), row[0]));
             for key in ["k", "k_hat", "eps"] {
-                let found: f64 = cell(found, key).parse().unwrap();
-                assert!((found - column(&row, key)).abs() < 1e-6, "{model} {key} of {line}: {found}");
+                for found in [by_flags[key].as_f64().unwrap(), cell(of_table, key).parse().unwrap()] {
+                    assert!((found - column(row, key)).abs() < 1e-6, "{model} {key} of {row:?}: {found}");
+                }
             }
         }
     }
@@ -71,11 +57,9 @@ fn analyze_by_probe_gives_the_columns_of_lammps_and_warns_where_contacts_open() 
     let by_probe = |amplitude: &str| -> Value {
         let arguments = ["--method", "probe", "--amplitude", amplitude, "--format", "json"];
         let ended = lab.run(&[&["analyze", &reference.to_string_lossy()], &arguments[..]].concat());
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-        serde_json::from_str::<Value>(&ended.stdout).unwrap()[0].take()
+        ended.assert_code(0).json()[0].take()
     };
-    let sidecar: Value =
-        serde_json::from_slice(&std::fs::read(golden("reference/ref_packing_500.json")).unwrap()).unwrap();
+    let sidecar = json_file(&golden("reference/ref_packing_500.json"));
     let found = by_probe("1e-7");
     let lammps = &sidecar["lammps_C_Pa_eps_1e-7"];
     let c = |m: &Value, i: usize, j: usize| m[i][j].as_f64().unwrap();
@@ -98,17 +82,10 @@ fn analyze_by_probe_gives_the_columns_of_lammps_and_warns_where_contacts_open() 
 #[test]
 fn analyze_reproduces_the_numbers_of_lammps_on_its_own_packing() {
     let lab = Lab::new();
-    let ended = lab.run(&[
-        "analyze",
-        &golden("reference/ref_packing_500.csv.gz").to_string_lossy(),
-        "--format",
-        "json",
-    ]);
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    let found: Value = serde_json::from_str(&ended.stdout).unwrap();
-    let found = &found[0];
-    let sidecar: Value =
-        serde_json::from_slice(&std::fs::read(golden("reference/ref_packing_500.json")).unwrap()).unwrap();
+    let reference = golden("reference/ref_packing_500.csv.gz");
+    let states =
+        lab.run(&["analyze", &reference.to_string_lossy(), "--format", "json"]).assert_code(0).json();
+    let (found, sidecar) = (&states[0], json_file(&golden("reference/ref_packing_500.json")));
     assert_eq!(found["grains"], 500);
     assert_eq!(found["contacts"], 1277);
     assert_eq!(found["rattlers"], 24);
@@ -141,11 +118,9 @@ fn analyze_reproduces_the_numbers_of_lammps_on_its_own_packing() {
 #[test]
 fn the_sixteen_states_of_the_paper_are_near_its_tables() {
     let lab = Lab::new();
-    let ended = lab.start(&["reproduce", "--quick"]).ended(Duration::from_secs(300));
-    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    lab.start(&["reproduce", "--quick"]).ended(Duration::from_secs(300)).assert_code(0);
     let folder = lab.folder().join("recordings/campaigns/paper-500");
-    let text = std::fs::read(folder.join("reproduction.json")).unwrap();
-    let found: Value = serde_json::from_slice(&text).unwrap();
+    let found = json_file(&folder.join("reproduction.json"));
     let states = found["states"].as_array().unwrap();
     let of = |quantity: &'static str| states.iter().filter(move |s| s["quantity"] == quantity);
     for (quantity, tolerance, relative) in
@@ -175,4 +150,38 @@ fn the_sixteen_states_of_the_paper_are_near_its_tables() {
         assert!(!rest.contains(outside), "{outside}");
     }
     assert!(!page.contains("NaN") && page.matches("<svg").count() == 20);
+}
+
+/// The first state of the ensemble `wide`.
+const STATE: [&str; 14] = [
+    "invert",
+    "--model=relaxed",
+    "--g12=74.224e6",
+    "--g13=81.816e6",
+    "--theta=136.988e6",
+    "--c11=226.698e6",
+    "--c33=264.817e6",
+    "--c13=89.544e6",
+    "--pressure=50e3",
+    "--stress-ratio=0",
+    "--size-spread=0",
+    "--grain-shear-modulus=35.3e9",
+    "--poisson=0.212",
+    "--error=0.01",
+];
+
+#[test]
+fn arviz_corner_and_pandas_read_draws_and_find_the_estimate() {
+    let Some(python) = python::with("arviz, corner, pandas") else { return };
+    let lab = Lab::new();
+    let [json, csv, estimate] =
+        ["draws.json", "draws.csv", "estimate.json"].map(|name| lab.folder().join(name));
+    for file in [&json, &csv] {
+        let run = lab.run(&[&STATE[..], &["--format=json", "--draws", file.to_str().unwrap()]].concat());
+        std::fs::write(&estimate, run.assert_code(0).stdout).unwrap();
+    }
+    let files = [&json, &csv, &estimate].map(|path| path.to_str().unwrap());
+    let read = python::tool(&python, "check_draws.py", &files);
+    let (out, err) = (String::from_utf8_lossy(&read.stdout), String::from_utf8_lossy(&read.stderr));
+    assert!(read.status.success(), "{out}{err}");
 }

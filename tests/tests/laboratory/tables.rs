@@ -1,9 +1,10 @@
 //! Tables of recordings beside rosbags, and definitions that a recording lacks.
 
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use system_tests::lab::{Lab, golden};
 use system_tests::python;
+use system_tests::terminal::Terminal;
 
 const PAGE: &str = include_str!("../../../recordings/README.md");
 
@@ -15,43 +16,24 @@ fn run(lab: &Lab, arguments: &[&str], code: i32) -> String {
 }
 
 #[test]
-fn every_value_of_a_parquet_table_is_that_of_rosbags_and_the_recipe_of_the_page_reads_it() {
-    let Some(python) = python::with("rosbags, pandas, pyarrow, polars, duckdb") else { return };
+fn every_value_of_a_csv_table_is_that_of_rosbags_and_the_recipe_of_the_page_reads_it() {
+    let Some(python) = python::with("rosbags, pandas, pyarrow") else { return };
     let lab = Lab::new();
     let ours = lab.launch(&golden("scenes/tiny.toml"), &[]);
     let made = python::tool(&python, "make_bags.py", &[lab.folder().to_str().unwrap()]);
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
-    for (path, folder) in [(ours.to_str().unwrap(), "tables"), ("rosbags", "others")] {
-        run(&lab, &["bag", "convert", path, "--format", "parquet", "-o", folder], 0);
+    let ours = ours.to_str().unwrap();
+    for (path, folder) in [(ours, "tables"), ("rosbags", "others")] {
+        run(&lab, &["bag", "convert", path, "--format", "csv", "-o", folder], 0);
         let [path, folder] = [path, folder].map(|p| lab.folder().join(p).to_str().unwrap().to_owned());
-        let compared = python::tool(&python, "compare_parquet.py", &[&path, &folder]);
+        let compared = python::tool(&python, "compare_csv.py", &[&path, &folder]);
         assert!(compared.status.success(), "{}", String::from_utf8_lossy(&compared.stderr));
     }
+    run(&lab, &["bag", "convert", ours, "--format", "json", "-o", "lines"], 0);
     let recipe = PAGE.split("```python\n").nth(1).unwrap().split("```").next().unwrap();
     let read = Command::new(&python).args(["-c", recipe]).current_dir(lab.folder()).output().unwrap();
     let (out, err) = (String::from_utf8_lossy(&read.stdout), String::from_utf8_lossy(&read.stderr));
     assert!(read.status.success() && out.contains("hertz-mindlin") && out.contains("pressure"), "{out}{err}");
-}
-
-#[test]
-fn an_exploded_array_has_a_row_per_value_and_one_that_no_topic_has_is_refused() {
-    let lab = Lab::new();
-    let source = lab.launch(&golden("scenes/tiny.toml"), &["--one-process"]);
-    let source = source.to_str().unwrap();
-    let convert = |array: &str, format: &str, code| {
-        let form = ["--explode", array, "--format", format, "-o", format];
-        run(&lab, &[&["bag", "convert", source, "--topics", "microstructure"], &form[..]].concat(), code)
-    };
-    convert("estimates", "csv", 0);
-    let text = std::fs::read_to_string(lab.folder().join("csv/microstructure.csv")).unwrap();
-    let rows: Vec<&str> = text.lines().collect();
-    let place = rows[0].split(',').position(|name| name == "model").unwrap();
-    let models: Vec<&str> = rows[1..].iter().map(|row| row.split(',').nth(place).unwrap()).collect();
-    assert!(models.len() > 4 && models.contains(&"relaxed") && models.contains(&"ratio"), "{models:?}");
-    let refused = convert("estimate", "parquet", 2);
-    assert!(refused.contains("they have: estimates"), "{refused}");
-    assert!(!lab.folder().join("parquet").exists(), "nothing is left of it");
-    assert!(convert("estimates", "mcap", 2).contains("--explode is for tables"));
 }
 
 /// Writes a recording with a topic whose definition is not in it.
@@ -87,23 +69,24 @@ fn definitions_that_a_recording_lacks_come_from_a_folder_and_can_be_added_to_it(
     run(&lab, &[&["bag", "convert", "old.mcap", "--format", "csv", "-o", "csv"], &path[..]].concat(), 0);
 
     // A topic that differs by the slash alone, of a type without fields, is another one.
-    let tables = run(
-        &lab,
-        &[&["bag", "convert", "old.mcap", "--format", "parquet", "-o", "t"], &path[..]].concat(),
-        0,
-    );
+    let tables =
+        run(&lab, &[&["bag", "convert", "old.mcap", "--format", "json", "-o", "t"], &path[..]].concat(), 0);
     assert!(
-        tables.contains("text.parquet  /text  1 row") && tables.contains("text.2.parquet  text  1 row"),
+        tables.contains("text.jsonl  /text  1 row") && tables.contains("text.2.jsonl  text  1 row"),
         "{tables}"
     );
 
-    let part = run(&lab, &["bag", "add-schemas", "old.mcap", "-o", "part.mcap"], 3);
-    assert!(part.contains("/odd: left without a definition: the definition of demo_msgs/msg/Odd"), "{part}");
     std::fs::create_dir_all(lab.folder().join("wrong/demo_msgs/msg")).unwrap();
+    let with = |folder: &str, to: &str, code| {
+        run(&lab, &["bag", "convert", "old.mcap", "--msg-path", folder, "-o", to], code)
+    };
+    let part = with("wrong", "part.mcap", 3);
+    assert!(part.contains("/odd: the recording has no definition of demo_msgs/msg/Odd"), "{part}");
+    assert!(run(&lab, &["bag", "info", "part.mcap", "--format", "csv"], 0).contains("missing"), "{part}");
     std::fs::write(lab.folder().join("wrong/demo_msgs/msg/Odd.msg"), "float64 n\n").unwrap();
-    let wrong = run(&lab, &["bag", "add-schemas", "old.mcap", "--msg-path", "wrong", "-o", "wrong.mcap"], 1);
+    let wrong = with("wrong", "wrong.mcap", 1);
     assert!(wrong.contains("nothing was written") && !lab.folder().join("wrong.mcap").exists(), "{wrong}");
-    run(&lab, &[&["bag", "add-schemas", "old.mcap", "-o", "new.mcap"], &path[..]].concat(), 0);
+    with("types", "new.mcap", 0);
     assert!(run(&lab, &["bag", "cat", "new.mcap"], 0).contains("{\"n\":7}"));
     let read = "import sys; from rosbags.highlevel import AnyReader; from pathlib import Path\n\
                 with AnyReader([Path(sys.argv[1])]) as r: print([r.deserialize(d, c.msgtype) for c, _, d in r.messages()])";
@@ -138,4 +121,22 @@ fn a_conversion_of_more_than_a_second_shows_its_progress_on_a_terminal_and_erase
     let (drawn, end) = (text.find(" % of the recording, "), text.rfind("\r\u{1b}[2K"));
     assert!(shown.status.success() && drawn.is_some() && drawn < end, "{text:?}");
     assert!(text.contains("many.csv  /many  400 rows"), "{text:?}");
+}
+
+/// A table that a file gets is what its texts are; on a terminal they must not be obeyed.
+#[test]
+fn an_escape_sequence_in_a_table_is_shown_on_a_terminal_and_kept_in_a_file() {
+    let lab = Lab::new();
+    let file = lab.folder().join("t.csv");
+    std::fs::write(&file, "sample,pressure_pa,g12_pa,g13_pa,theta_pa\na\x1b[31mb,5e4,1.04e8,1.12e8,1.36e8\n")
+        .unwrap();
+    let words = ["invert", "--table", &file.to_string_lossy(), "--model", "ratio", "--format", "csv"];
+    let kept = lab.run(&words);
+    assert!(kept.stdout.contains("a\x1b[31mb"), "{}\n{}", kept.stdout, kept.stderr);
+    let (terminal, stdout) = Terminal::open(200);
+    let mut command = lab.command(&words);
+    assert!(command.stdout(stdout).stderr(Stdio::null()).status().unwrap().success());
+    drop(command);
+    let shown = terminal.shown().lines.join("\n");
+    assert!(shown.contains(r"a\u{1b}[31mb") && !shown.contains('\x1b'), "{shown:?}");
 }

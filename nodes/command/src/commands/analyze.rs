@@ -107,7 +107,6 @@ enum ContactSprings {
     Normal,
 }
 
-/// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     if args.yade_script {
         print(yade::EXPORTER)?;

@@ -27,7 +27,7 @@ pub(crate) enum BagCommand {
     /// Read every record of a recording and list all faults.
     #[command(after_help = check::EXAMPLES)]
     Check(Recorded),
-    /// Write the packings of a recording as VTK, VTKHDF, XYZ, LAMMPS or CSV files.
+    /// Write the packings of a recording as VTK, XYZ, LAMMPS or CSV files.
     #[cfg(feature = "studio")]
     Export(export::Args),
     /// Complete a recording whose recorder was killed, so that other tools read it.
@@ -38,7 +38,6 @@ pub(crate) enum BagCommand {
     Tool(grainlab_bag_tools::Command),
 }
 
-/// Runs the command.
 pub(crate) fn run(command: &BagCommand) -> Result<Exit, Failure> {
     match command {
         BagCommand::Record(args) => record::run(args),

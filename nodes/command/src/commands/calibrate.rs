@@ -59,7 +59,6 @@ pub(crate) struct Args {
     out: Option<PathBuf>,
 }
 
-/// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let split = |names: &str| names.split(',').map(str::to_owned).collect::<Vec<_>>();
     let named = |recipe: &str, packing: &str| {
@@ -101,7 +100,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     match &args.out {
         Some(path) if path.as_os_str() != "-" => {
-            write_whole(path, toml).map_err(Failure::at(path))?;
+            write_whole(path, toml)?;
             say!("grainlab: {} is written; use it with --calibration {0}", path.display());
         }
         _ => print(&toml)?,

@@ -27,12 +27,12 @@ on another host, whose processes cannot be seen from here). Seconds are those of
 from the mean of the finished members, at as many at a time as run now.";
 
 const GATHER: &str = "\
-states.csv, states.parquet: a row for each member and state.
-groups.csv, groups.parquet: a row for each scene, values set and phase: n, and KEY_mean and KEY_standard_error over the seeds, but of axes, which have no sign (empty
+states.csv: a row for each member and state.
+groups.csv: a row for each scene, values set and phase: n, and KEY_mean and KEY_standard_error over the seeds, but of axes, which have no sign (empty
 for one seed). KEY_n is there if KEY is not known in every state of a group: its mean is over the others.
 
-The same campaign gives the same bytes of CSV. states.parquet also has grainlab_version, commit, host and begun (UTC) of each member.
-Settings are numbers where every value is one, else text. The exit code is 3 while members are missing.";
+The same campaign gives the same bytes. `grainlab bag info` of a member has its version, commit, host and date.
+Settings are numbers where every value is one, else text. The exit code is 3 while members are missing, or a run is not the one of its member: scene, seed and settings are compared.";
 
 /// A campaign to run.
 #[derive(Debug, clap::Args)]
@@ -61,7 +61,7 @@ enum Command {
         #[arg(long, value_enum, default_value_t)]
         format: Format,
     },
-    /// Write the states of all finished members, and their means over seeds, as CSV and Parquet, also while others run
+    /// Write the states of all finished members, and their means over seeds, as CSV, also while others run
     #[command(after_help = GATHER)]
     Gather(Place),
     /// Show every key of the file of a campaign, as Markdown
@@ -76,7 +76,6 @@ struct Place {
     folder: PathBuf,
 }
 
-/// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     match (&args.command, &args.file) {
         (Some(Command::Status { place, format }), _) => {
@@ -111,18 +110,20 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
 }
 
-/// The folder of a campaign, locked; without a lock it was only named, and nothing written. Reads every scene and compares it with
-/// the runs that are there, so that a fault ends the campaign before it begins.
+/// Creates or finds the folder of a campaign, and writes there what its members are. Reads every scene and compares it with the runs
+/// that are there, so that a fault ends the campaign before it begins.
+///
+/// The folder is locked, but not for a script that is printed: its tasks run later, and this process runs no member.
 pub(crate) fn begin(
     campaign: &Campaign,
     root: &Path,
     options: &Options,
 ) -> Result<(Folder, Option<Lock>), Failure> {
     options.check()?;
-    let lock = if options.engine == Engine::Print { None } else { Some(Folder::create(root)?.1) };
-    let folder = Folder::at(root)?;
+    let folder = Folder::create(root, campaign)?;
+    let lock = (options.engine != Engine::Print).then(|| folder.lock()).transpose()?;
     check(campaign, &folder, false)?;
-    lock.iter().try_for_each(|_| folder.plan(campaign))?;
+    folder.plan(campaign)?;
     Ok((folder, lock))
 }
 

@@ -64,7 +64,6 @@ fn plot_file(_: &Args) -> Option<&Path> {
     None
 }
 
-/// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let of_series = args.contact.unwrap_or(if args.speeds.is_some() || args.plan.is_some() {
         Contact::Free
@@ -175,13 +174,7 @@ fn infer_series(args: &Args, name: &str, lines: &[SpeedLine], contact: Contact) 
         ));
     }
     args.check_series()?;
-    let has_pressure = lines.iter().all(|l| l.pressure_pa.is_some());
-    let has_density = lines.iter().all(|l| l.density.or(l.grain_density).is_some());
-    let in_columns = [
-        ("--pressure", has_pressure && args.pressure.is_some()),
-        ("--density", has_density && args.density.is_some()),
-    ];
-    refuse(&in_columns, "is in a column of every row")?;
+    args.refuse_flags_in_columns(lines)?;
     let prior = series::prior(args.prior.as_deref())?;
     series::run(name, lines, args, contact, &prior, (args.format, plot_file(args)))
 }

@@ -1,9 +1,8 @@
 //! `grainlab launch`: the main job.
 
-use crate::viewers::VIEWERS;
 #[cfg(feature = "studio")]
 use grainlab_campaign::{Campaign, Member};
-use grainlab_console::{Failure, Format, say};
+use grainlab_console::{Failure, Format, memory, say};
 use grainlab_launcher::agreement::names_of_run;
 use grainlab_launcher::{BUILT_IN, LaunchFile, NodePlan, start_all};
 use grainlab_node_kit::Exit;
@@ -23,6 +22,8 @@ mod resume;
 
 use conduct::{conduct, medium};
 use directory::Given;
+#[cfg(feature = "studio")]
+pub(crate) use directory::another_scene;
 use engine::EngineOptions;
 use order::{Order, Record};
 use output::Output;
@@ -95,32 +96,40 @@ fn scene_help() -> String {
     format!("Scene: {known} or a file [default: the one of the launch file]")
 }
 
-/// Runs the command.
+/// Memory of the simulator as a gas begins, bytes a grain. Through the whole laboratory a run comes to eight times as much.
+const LEAST_MEMORY: f64 = 800.0;
+
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let args = &args.with_flags()?;
     let report = !args.no_report;
     let output = Output { format: args.format, verbose: args.verbose, resumed: false, report };
     if let Some(run) = &args.resume {
+        directory::check_path(run)?;
+        // A directory without a run gets no lock.
+        Order::read(run)?;
+        let _at_work = directory::lock(run)?;
         return resume::run(run, &args.engine, output);
     }
     if let Some(exit) = without_run(args)? {
         return Ok(exit);
     }
+    directory::check_path(args.run.as_deref().or(args.out.as_deref()).unwrap_or(Path::new(RUNS)))?;
     let (scene, order) = planned(args)?;
-    // Held to the end of the run.
-    let mut _at_work = None;
-    let directory = match &args.run {
-        None => new_directory(args.out.as_deref().unwrap_or(Path::new(RUNS)), &scene)?,
+    let grains = scene.scene.grains;
+    memory::require(LEAST_MEMORY * f64::from(grains), &format!("a run of {grains} grains takes"))?;
+    // The lock is held to the end of the run.
+    let (directory, _at_work) = match &args.run {
+        None => {
+            let directory = new_directory(args.out.as_deref().unwrap_or(Path::new(RUNS)), &scene)?;
+            let lock = directory::lock(&directory)?;
+            (directory, lock)
+        }
         Some(directory) => match directory::given(directory, &scene, &order)? {
             Given::Finished => return Ok(Exit::Done),
-            Given::Begun(directory, lock) => {
-                _at_work = Some(lock);
+            Given::Begun(directory, _at_work) => {
                 return resume::run(&directory, &EngineOptions::default(), output);
             }
-            Given::Empty(directory, lock) => {
-                _at_work = Some(lock);
-                directory
-            }
+            Given::Empty(directory, lock) => (directory, lock),
         },
     };
     let medium = medium(order.one_process)?;
@@ -133,7 +142,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 /// Starts the processes of a launch file that has no simulator.
 fn without_run(args: &Args) -> Result<Option<Exit>, Failure> {
     let (path, given) = split(&args.words)?;
-    let plans = read_file(path)?.without_run(&given, VIEWERS).map_err(|e| fault_of(path, &e))?;
+    let plans = read_file(path)?.without_run(&given).map_err(|e| fault_of(path, &e))?;
     let Some(plans) = plans else { return Ok(None) };
     let of_run = args.scene.is_some() || args.seed.is_some() || args.out.is_some() || args.run.is_some();
     if of_run || args.one_process || !args.set.is_empty() {

@@ -21,8 +21,5 @@ pub(crate) mod report;
 pub(crate) mod reproduce;
 pub(crate) mod run;
 pub(crate) mod scene;
-mod separated;
-#[cfg(feature = "studio")]
-pub(crate) mod verify;
 #[cfg(feature = "studio")]
 pub(crate) mod view;

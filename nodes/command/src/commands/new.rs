@@ -49,18 +49,39 @@ pub(crate) struct Args {
     output: Option<PathBuf>,
 }
 
+/// Modules that a Python file in the folder of the node would hide: the standard library (`sys.stdlib_module_names`), and what the templates import.
+const MODULES: &str = "\
+    abc aifc argparse array ast asynchat asyncio asyncore atexit audioop base64 bdb binascii bisect builtins bz2 calendar \
+    cgi cgitb chunk cmath cmd code codecs codeop collections colorsys compileall concurrent configparser contextlib \
+    contextvars copy copyreg crypt csv ctypes curses dataclasses datetime dbm decimal difflib dis distutils doctest email \
+    encodings ensurepip enum errno faulthandler fcntl filecmp fileinput fnmatch fractions ftplib functools gc genericpath \
+    getopt getpass gettext glob graphlib grp gzip hashlib heapq hmac html http idlelib imaplib imghdr imp importlib \
+    inspect io ipaddress itertools json keyword lib2to3 linecache locale logging lzma mailbox mailcap marshal math \
+    mimetypes mmap modulefinder msilib msvcrt multiprocessing netrc nis nntplib nt ntpath nturl2path numbers opcode \
+    operator optparse os ossaudiodev pathlib pdb pickle pickletools pipes pkgutil platform plistlib poplib posix posixpath \
+    pprint profile pstats pty pwd py_compile pyclbr pydoc pydoc_data pyexpat queue quopri random re readline reprlib \
+    resource rlcompleter runpy sched secrets select selectors shelve shlex shutil signal site smtpd smtplib sndhdr socket \
+    socketserver spwd sqlite3 sre_compile sre_constants sre_parse ssl stat statistics string stringprep struct subprocess \
+    sunau symtable sys sysconfig syslog tabnanny tarfile telnetlib tempfile termios test textwrap threading time timeit \
+    tkinter token tokenize tomllib trace traceback tracemalloc tty turtle turtledemo types typing unicodedata unittest \
+    urllib uu uuid venv warnings wave weakref webbrowser winreg winsound wsgiref xdrlib xml xmlrpc zipapp zipfile \
+    zipimport zlib zoneinfo \
+    msgs grainlab grainlab_msgs cyclonedds numpy pytest";
+
+/// Names that cargo refuses for a program, and the crates that the template depends on.
+const CRATES: &str = "build deps examples incremental grainlab_msgs grainlab_node_kit";
+
 fn name(text: &str) -> Result<String, String> {
     let is_one = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     let first = text.starts_with(|c: char| c.is_ascii_lowercase());
     if !(first && text.chars().all(is_one)) {
         return Err("lower-case letters, digits and underscores, a letter first, as my_probe".to_owned());
     }
-    // The folder is searched before the libraries of Python; no two nodes of a launch file have one name.
-    let modules = "argparse csv dataclasses json msgs os pathlib re subprocess sys tempfile test threading time types grainlab_msgs cyclonedds pytest";
+    // No two nodes of a launch file have one name.
     let is_node = BUILT_IN.iter().any(|(_, launch)| launch.contains(&format!("name: {text}\n")));
-    if is_node || modules.split(' ').any(|taken| taken == text) {
+    if is_node || [MODULES, CRATES].iter().any(|list| list.split(' ').any(|taken| taken == text)) {
         return Err(format!(
-            "{text} is the name of a node of grainlab or of a module of Python: take another, as my_{text}"
+            "{text} is the name of a node of grainlab, of a module of Python or of a folder of cargo: choose another one, such as my_{text}"
         ));
     }
     Ok(text.to_owned())
@@ -171,7 +192,6 @@ fn inversion_with(name: &str, run: &str) -> String {
     include_str!("new/node.launch.yaml").replace("NAME", name).replace("RUN", run)
 }
 
-/// The laboratory with another servo.
 fn lab_with_servo(name: &str, run: &str) -> String {
     let (_, demo) = BUILT_IN[0];
     demo.replace("grainlab run servo_controller --ros-args -p min_readers:=2", run)
@@ -198,7 +218,10 @@ mod tests {
         }
         assert!(["my_probe", "a1"].map(name).iter().all(Result::is_ok));
         assert!(
-            ["1a", "My", "a-b", "msgs", "json", "recorder", "", "é"].map(name).iter().all(Result::is_err)
+            ["1a", "My", "a-b", "msgs", "json", "random", "deps", "build", "recorder", "", "é"]
+                .map(name)
+                .iter()
+                .all(Result::is_err)
         );
     }
 

@@ -15,6 +15,8 @@ pub(crate) struct Found<R> {
     pub(crate) shown: R,
     /// The packing lacks what was sought.
     pub(crate) is_without: bool,
+    /// It lacks it by a fault of the packing or of the measurement: exit 4, whatever the other packings are.
+    pub(crate) is_fault: bool,
     /// Messages that a node would publish, or the reason why it would not.
     pub(crate) messages: Result<Vec<Recorded>, String>,
 }

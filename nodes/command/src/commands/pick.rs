@@ -27,7 +27,8 @@ The table has a row for each record, as CSV with a header:
   time_column, source_column, receiver_column  numbers of the columns in the file [1, 2, 3]
   time_unit                                  s, ms or us [s]
   sample, mode, direction, angle_deg, pressure_pa, density, ...  are copied to the output: columns of `grainlab invert --speeds`.
-                                             Of mode p the first wave is picked, of the others the first strong one, or of s, sv and sh the largest
+                                             Of mode p the first wave that stands out of the noise is picked, of s, sv and sh the first strong one
+                                             that is not P, and without a mode the first strong one
 
 Every record is picked by its first break, its peak and its cross-correlation with the source. The same is done with computed records of a
 path of known speed, with the source, loss, noise and crosstalk of the record, and drawn dispersion and near field: their mean error is
@@ -69,14 +70,7 @@ const SOON: f64 = 0.5;
 /// A row with its picks, or the reason why it has none.
 type Found = (Row, Result<Picks, String>);
 
-/// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let whole = |path: &PathBuf| path.canonicalize().ok();
-    if args.out.as_ref().and_then(whole).is_some_and(|out| Some(out) == whole(&args.records)) {
-        return Err(Failure::usage(
-            "--out is the table of the records, which it would replace: name another file",
-        ));
-    }
     let mut all: Vec<Found> = Vec::new();
     let mut unread = 0;
     for row in list::read(&args.records)? {
@@ -93,7 +87,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let refused = all.iter().filter(|(_, picked)| picked.is_err()).count();
     if let Some(path) = &args.out {
-        write_whole(path, speeds(&all)).map_err(Failure::at(path))?;
+        write_whole(path, speeds(&all))?;
         say!("grainlab: {} speeds are written to {}", all.len() - refused, path.display());
     }
     let values: Vec<Value> = all.iter().map(value).collect();
@@ -188,13 +182,20 @@ fn notes(row: &Row, p: &Picks) -> Vec<String> {
         (!row.has_delay, "the delay of the electronics was taken as 0"),
     ];
     notes.extend(cases.into_iter().filter(|(holds, _)| *holds).map(|(_, note)| note.to_owned()));
-    let (best, is_s) = (p.picks[p.recommended].speed, row.passage.longitudinal == Some(false));
-    if let Some(other) = p.other_speed {
-        let [first, larger] = if is_s { [other, best] } else { [best, other] };
-        let taken = if is_s { "larger was taken, and the first may be P" } else { "first was taken" };
-        notes.push(format!(
-            "a larger wave of the same shape ({larger:.1} m/s) follows the first strong one ({first:.1} m/s): the {taken}; the error covers both"
-        ));
+    let best = p.picks[p.recommended].speed;
+    match p.other_speed {
+        Some(other) if row.passage.longitudinal == Some(true) => notes.push(format!(
+            "a weaker wave, which may be noise, precedes the first clear one ({best:.1} m/s) at {other:.1} m/s: the error covers both"
+        )),
+        Some(other) => {
+            let is_later = other > best;
+            let [first, later] = if is_later { [other, best] } else { [best, other] };
+            let taken = if is_later { "later was taken, and the first may be P" } else { "first was taken" };
+            notes.push(format!(
+                "a strong wave ({later:.1} m/s) follows the first strong one ({first:.1} m/s): the {taken}; the error covers both"
+            ));
+        }
+        None => {}
     }
     if row.passage.longitudinal != Some(true) && p.slowest > SOON * best {
         notes.push(format!(

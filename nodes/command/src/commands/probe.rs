@@ -60,7 +60,6 @@ pub(crate) fn settings(given: &[(String, String)]) -> Result<grainlab_acoustic_p
     Flags::of(given)?.settings()
 }
 
-/// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     args.import.topic_has_use(&args.files)?;
     let options = args.import.options()?;

@@ -1,8 +1,8 @@
 //! `grainlab report`: pages of recorded runs.
 
-use grainlab_console::{Failure, count, has_name_of, print, say, worse};
+use grainlab_console::{Failure, count, has_name_of, print, say, worse, write_whole};
 use grainlab_node_kit::Exit;
-use grainlab_report::{FILE, Run, overview, write_page};
+use grainlab_report::{FILE, Run, default_page, overview};
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
@@ -30,23 +30,21 @@ pub(crate) struct Args {
     output: Option<PathBuf>,
 }
 
-/// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     args.output.as_ref().map_or(Ok(()), |path| has_name_of("-o", path, "html"))?;
     if let [run] = args.runs.as_slice() {
         let found = read(run)?;
-        let path = args.output.clone().unwrap_or_else(|| beside(run));
+        let path = args.output.clone().map_or_else(|| default_page(beside(run)), Ok)?;
         write(&found, &path)?;
         print(&format!("{}\n", path.display()))?;
         return Ok(standing(run, &found));
     }
-    let output = args.output.clone().unwrap_or_else(|| OVERVIEW.into());
+    let output = args.output.clone().map_or_else(|| default_page(OVERVIEW.into()), Ok)?;
     let mut all = Vec::with_capacity(args.runs.len());
     let (mut exit, mut repeated) = (Exit::Done, 0);
     for directory in &args.runs {
-        match read(directory) {
-            Ok(run) => {
-                let path = beside(directory);
+        match read(directory).and_then(|run| Ok((run, default_page(beside(directory))?))) {
+            Ok((run, path)) => {
                 write(&run, &path)?;
                 exit = worse(exit, standing(directory, &run));
                 if all.iter().any(|(other, _)| run.repeats(other)) {
@@ -68,7 +66,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     if all.is_empty() {
         return Err(Failure::failed("there is no run to report"));
     }
-    write_page(&output, &overview(&all)).map_err(Failure::failed)?;
+    write_whole(&output, overview(&all))?;
     print(&format!("{}: {}, each with its page\n", output.display(), count(all.len(), "run")))?;
     Ok(exit)
 }
@@ -103,7 +101,7 @@ fn standing(path: &Path, run: &Run) -> Exit {
 
 fn write(run: &Run, path: &Path) -> Result<(), Failure> {
     let page = run.html().map_err(Failure::failed)?;
-    write_page(path, &page).map_err(Failure::failed)
+    write_whole(path, &page)
 }
 
 /// The page of a run: in its folder, or beside its recording and named after it, since a folder may have several.

@@ -53,7 +53,6 @@ pub(crate) struct Args {
     format: Format,
 }
 
-/// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     if let Some(folder) = &args.distance {
         return judge(folder, args.format);

@@ -1,6 +1,5 @@
 //! `grainlab run`: one node as this process.
 
-use crate::viewers::VIEWERS;
 use grainlab_console::{Failure, print};
 use grainlab_launcher::NodeKind;
 use grainlab_launcher::pipe;
@@ -11,7 +10,7 @@ use grainlab_recorder::{ResultSlot, tallies};
 #[derive(Debug, clap::Args)]
 #[command(after_help = help(), override_usage = "grainlab run NODE [--ros-args -p NAME:=VALUE -r FROM:=TO ...]")]
 pub(crate) struct Args {
-    #[arg(value_name = "NODE", help = one_of(&NodeKind::names(VIEWERS)))]
+    #[arg(value_name = "NODE", help = one_of(&NodeKind::names()))]
     node: String,
     /// ROS 2 arguments: --ros-args -p, -r, --params-file, --log-level
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "ARGUMENTS")]
@@ -25,7 +24,7 @@ fn one_of(names: &str) -> String {
 
 fn help() -> String {
     let mut text = String::from("Nodes and their parameters (set with -p NAME:=VALUE):\n");
-    for node in NodeKind::all(VIEWERS) {
+    for node in NodeKind::all() {
         text += &format!("\n  {node}: {}\n", node.summary());
         node.parameters().iter().for_each(|p| text += &format!("    {p}\n"));
     }
@@ -33,7 +32,6 @@ fn help() -> String {
             grainlab run fabric_analyzer --ros-args -p tolerance:=1e-10 --log-level debug"
 }
 
-/// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     pipe::watch();
     // `ros2 run` names the package first.
@@ -41,7 +39,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         ("grainlab", Some((name, rest))) => (name.as_str(), rest),
         (name, _) => (name, &args.rest[..]),
     };
-    let node = NodeKind::named(name, VIEWERS).map_err(Failure::usage)?;
+    let node = NodeKind::named(name).map_err(Failure::usage)?;
     let ros = ros_arguments(rest)?;
     // Invalid names are refused by the node.
     Names::from_args(node.name(), &ros)

@@ -2,11 +2,11 @@
 
 use clap::Subcommand;
 use grainlab_console::{Failure, Table, print, say, worse};
-use grainlab_core::non_rattlers;
+use grainlab_core::{ServoLaw, non_rattlers};
 use grainlab_micromechanics::unbalanced_force_ratio;
 use grainlab_node_kit::Exit;
 use grainlab_recordings::scenes::{self, SceneText};
-use grainlab_scene::{BUILT_IN, Condition, Measure};
+use grainlab_scene::{BUILT_IN, Condition, Measure, Phase, PhaseKind, Scene};
 use std::fs::OpenOptions;
 use std::io::Write;
 use std::path::PathBuf;
@@ -59,7 +59,6 @@ pub(crate) struct New {
     base: Option<String>,
 }
 
-/// Runs the command.
 pub(crate) fn run(command: &SceneCommand) -> Result<Exit, Failure> {
     match command {
         SceneCommand::List => list(),
@@ -130,16 +129,23 @@ pub(super) fn notes_on(found: &SceneText) -> Vec<String> {
     notes
 }
 
+/// The text of a scene of this name that changes a base.
+fn changes_of(base: &str, name: &str, scene: &Scene) -> String {
+    let is_undamped = |phase: &Phase| {
+        matches!(phase.kind, PhaseKind::Servo { law: ServoLaw::Normalised { leak: 0.0, .. }, .. })
+    };
+    let damped = "# The stress control of the base has leak = 0. If the stress swings about its target, damp it:\n# phase.\"*\".leak = 0.01\n";
+    format!(
+        "# What differs from {base}; `grainlab scene show {name}.toml` shows the whole.\nbase = {base:?}\nname = {name:?}\n{}",
+        if scene.phases.iter().any(is_undamped) { damped } else { "" }
+    )
+}
+
 fn create(new: &New) -> Result<Exit, Failure> {
     let name = &new.name;
     let text = match &new.base {
         None => grainlab_scene::template(name),
-        Some(base) => {
-            scenes::load(base, &[], None)?;
-            format!(
-                "# What differs from {base}; `grainlab scene show {name}.toml` shows the whole.\nbase = {base:?}\nname = {name:?}\n"
-            )
-        }
+        Some(base) => changes_of(base, name, &scenes::load(base, &[], None)?.scene),
     };
     let path = PathBuf::from(format!("{name}.toml"));
     // An invalid name is refused before the file is created.
@@ -155,4 +161,26 @@ fn create(new: &New) -> Result<Exit, Failure> {
     written.map_err(Failure::at(&path))?;
     print(&format!("{}\n", path.display()))?;
     Ok(Exit::Done)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A scene with a built-in base takes over its undamped stress control, which the default does not have.
+    #[test]
+    fn a_new_scene_from_an_undamped_base_has_the_line_that_damps_it() {
+        let demo = Scene::parse(grainlab_scene::built_in("demo").unwrap()).unwrap();
+        let text = changes_of("demo", "mine", &demo);
+        let leaks = |text: &str| -> Vec<f64> {
+            let leak = |phase: &Phase| match phase.kind {
+                PhaseKind::Servo { law: ServoLaw::Normalised { leak, .. }, .. } => Some(leak),
+                _ => None,
+            };
+            Scene::parse(text).unwrap().phases.iter().filter_map(leak).collect()
+        };
+        assert_eq!((leaks(&text), leaks(&text.replace("# phase.", "phase."))), (vec![0.0; 5], vec![0.01; 5]));
+        let damped = Scene::parse(&grainlab_scene::template("new")).unwrap();
+        assert!(!changes_of("new.toml", "mine", &damped).contains("leak"));
+    }
 }

@@ -2,10 +2,10 @@
 
 use super::packings::import;
 use super::run::ros_arguments;
-use grainlab_console::{Failure, count, has_name_of, print, write_whole};
+use grainlab_console::{Failure, count, has_name_of, print, worse, write_whole};
 use grainlab_node_kit::Exit;
-use grainlab_recordings::import::{Imported, each};
-use grainlab_report::write_page;
+use grainlab_recordings::import::{ImportError, Imported, each};
+use grainlab_report::default_page;
 use grainlab_viewer::{Film, Ground, Parts, Picture, Quantity, Size, Slice, View, page};
 use std::ffi::OsStr;
 use std::ops::ControlFlow;
@@ -75,7 +75,6 @@ pub(crate) struct Args {
     import: import::Args,
 }
 
-/// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     match (&args.file, &args.png) {
         (None, _) => live(args),
@@ -100,16 +99,24 @@ fn open(page: &OsStr) -> Result<(), Failure> {
     opened.map(|_| ()).map_err(failed)
 }
 
-/// Passes on the packings of the file; the exit is that of its warnings.
+/// Passes on the packings of the file; the exit is the worst of its warnings and of packings that overlap too deeply.
 fn packings(
     args: &Args,
     file: &Path,
     mut take: impl FnMut(Imported) -> ControlFlow<()>,
 ) -> Result<Exit, Failure> {
     let options = args.import.options()?;
-    let warnings = each(file, &options, &mut take).map_err(|e| Failure::failed(e.to_string()))?;
+    let mut exit = Exit::Done;
+    let mut seen = |imported: Imported| {
+        exit = worse(exit, imported.exit());
+        if let Some(fault) = imported.packing.overlap_fault() {
+            grainlab_console::say!("grainlab: {}, step {}: {fault}", file.display(), imported.step);
+        }
+        take(imported)
+    };
+    let warnings = each(file, &options, &mut seen).map_err(ImportError::failure)?;
     warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
-    Ok(if warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
+    Ok(worse(exit, if warnings.is_empty() { Exit::Done } else { Exit::DataLoss }))
 }
 
 fn view(imported: &Imported) -> View {
@@ -123,6 +130,7 @@ fn view(imported: &Imported) -> View {
 }
 
 fn html(args: &Args, file: &Path) -> Result<Exit, Failure> {
+    args.output.as_ref().map_or(Ok(()), |path| has_name_of("-o", path, "html"))?;
     let mut film = Film::default();
     let exit = packings(args, file, |imported| {
         film.push(view(&imported));
@@ -142,8 +150,8 @@ fn html(args: &Args, file: &Path) -> Result<Exit, Failure> {
     let grains = last.part.clone().unwrap_or_else(|| count(last.grains(), "grain"));
     let about = format!("{grains}, {shown}. Positions are rounded to 1/65536 of the cell.");
     let text = page(&name, &about, &name, &states).map_err(Failure::failed)?;
-    let path = args.output.clone().unwrap_or_else(|| beside(file));
-    write_page(&path, &text).map_err(Failure::failed)?;
+    let path = args.output.clone().map_or_else(|| default_page(beside(file)), Ok)?;
+    write_whole(&path, &text)?;
     print(&format!("{}\n", path.display()))?;
     if args.open {
         open(path.as_ref())?;
@@ -183,7 +191,7 @@ fn picture(args: &Args, file: &Path, png: &Path) -> Result<Exit, Failure> {
     let ground = if args.dark { Ground::Dark } else { Ground::Light };
     let parts = Parts { slice: args.slice, chains: args.force_chains };
     let bytes = Picture::of(&view, colour, size, ground, &parts).png().map_err(Failure::failed)?;
-    write_whole(png, bytes).map_err(Failure::at(png))?;
+    write_whole(png, bytes)?;
     print(&format!("{}\n", png.display()))?;
     Ok(exit)
 }

@@ -1,8 +1,5 @@
 //! Records of bursts in packings, and the speeds of long waves by dispersion: `tests/golden/waves/traces.csv.gz`, whose README has the command.
 
-#[path = "../tests/claims/golden_packing.rs"]
-mod golden_packing;
-
 use grainlab_acoustics::time_of_flight::{Settings as TimeOfFlight, curves};
 use grainlab_acoustics::{Instrument, Ray, Settings, Survey, measure};
 use grainlab_core::Vec3;
@@ -10,7 +7,8 @@ use grainlab_core::Vec3;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("packing,mode,speed,diameter,frequency,sample_rate,start,distance,samples");
     for folder in std::env::args().skip(1) {
-        let packing = golden_packing::read(&folder, "p");
+        let name = std::path::absolute(&folder)?.join("p");
+        let packing = grainlab_testkit::golden::packing(&name.to_string_lossy());
         let waves = measure(&packing, &Settings { survey: Survey::Minimal, ..Settings::default() })?.waves;
         let diameter = 2.0 * packing.radii.iter().sum::<f64>() / packing.radii.len() as f64;
         for (indices, normal) in [([0, 0, 1], Vec3::z()), ([1, 0, 0], Vec3::x())] {

@@ -11,7 +11,7 @@ mod cluster;
 use crate::effective_density::EffectiveDensity;
 use crate::error::AcousticsError;
 use cluster::{Cluster, clusters};
-use grainlab_core::results::NotJammed;
+use grainlab_core::results::NoStiffness;
 use grainlab_core::{Mat3, Packing, Vec3, min_contacts, non_rattlers};
 use grainlab_micromechanics::network::{SpringNetwork, Springs};
 use grainlab_micromechanics::{MicroError, PackingView};
@@ -32,15 +32,18 @@ pub(crate) struct Backbone {
     volume: f64,
 }
 
-/// For each grain, whether it carries force; an error if none does.
-pub(crate) fn carrying(packing: &Packing) -> Result<Vec<bool>, NotJammed> {
+/// For each grain, whether it carries force; an error if none does, or grains overlap beyond every contact law.
+pub(crate) fn carrying(packing: &Packing) -> Result<Vec<bool>, NoStiffness> {
     let grains = packing.grains();
     if packing.contacts.is_empty() {
-        return Err(NotJammed::NoContacts { grains });
+        return Err(NoStiffness::NoContacts { grains });
     }
     let carries = non_rattlers(packing);
     if carries.iter().all(|carries| !carries) {
-        return Err(NotJammed::OnlyRattlers { grains, needed: min_contacts(packing.friction) });
+        return Err(NoStiffness::OnlyRattlers { grains, needed: min_contacts(packing.friction) });
+    }
+    if packing.overlaps().is_some_and(|overlaps| overlaps.are_too_deep()) {
+        return Err(NoStiffness::TooDeep);
     }
     Ok(carries)
 }

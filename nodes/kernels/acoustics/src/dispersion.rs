@@ -30,7 +30,7 @@ use bloch::Bloch;
 use christoffel_modes::{AcousticTensor, long_wave_polarizations};
 use error::SolveError;
 use extrapolation::Extrapolation;
-use grainlab_core::results::NotJammed;
+use grainlab_core::results::NoStiffness;
 use grainlab_core::{Packing, Vec3};
 use grainlab_micromechanics::network::{SpringNetwork, relaxed_stiffness};
 use modes::modes;
@@ -218,7 +218,7 @@ fn failure(network: &SpringNetwork, error: SolveError, direction: Vec3, waveleng
         })
     };
     if error == SolveError::Floppy && !resists() {
-        return NotJammed::Floppy { contacts: network.contacts() }.into();
+        return NoStiffness::Floppy { contacts: network.contacts() }.into();
     }
     AcousticsError::NotConverged { direction: direction.into(), wavelength, reason: error.to_string() }
 }
@@ -235,6 +235,6 @@ mod tests {
         let text = reason(&packing).to_string();
         assert!(text.contains("some grains move without resistance"), "{text}");
         packing.contacts.retain(|c| c.image == [0; 3]);
-        assert!(matches!(reason(&packing), AcousticsError::NotJammed(NotJammed::Floppy { .. })));
+        assert!(matches!(reason(&packing), AcousticsError::NoStiffness(NoStiffness::Floppy { .. })));
     }
 }

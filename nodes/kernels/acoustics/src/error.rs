@@ -1,7 +1,7 @@
 //! Why a measurement failed.
 
 use grainlab_core::Vec3;
-use grainlab_core::results::NotJammed;
+use grainlab_core::results::NoStiffness;
 
 /// Why a packing's wave speeds could not be measured.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -18,7 +18,7 @@ pub enum AcousticsError {
     },
     /// No contact carries force, so that no wave propagates.
     #[error(transparent)]
-    NotJammed(#[from] NotJammed),
+    NoStiffness(#[from] NoStiffness),
     /// Waves of this frequency do not propagate in the packing.
     #[error(
         "a frequency of {frequency:.4e} Hz is above the cut-off of {cutoff:.4e} Hz, where waves along {} are two grains long and \

@@ -6,15 +6,21 @@
 //! signal, loss and noise: the mean difference is its bias, which is taken off, and the scatter its error. Dispersion and near field,
 //! which a pair of records does not determine, are drawn from what packings and point sources have.
 //!
-//! Real records have trains of waves, of transducers that ring and of echoes. The first wave is picked and the others are faded out
-//! (`separated`); a shape that is not that of the computed arrivals, a sign that fits no better than the other, and a signal
-//! just before a shear wave make the error larger. The onset is least affected by them.
+//! Real records have trains of waves, of transducers that ring and of echoes, and a source of one mode also sends the other. Of P the first
+//! wave that stands out of the noise is picked, by its first part, which is as long as the source. Of S the first strong wave that is not
+//! P is picked (`distinct`, `chosen`). The others are faded out (`separated`). A shape unlike the computed arrivals, a sign that fits no
+//! better than the other, and a signal just before a shear wave make the error larger. The onset is least affected by them.
 //!
 //! - `passage`: a record and its path; `cleaned`: checks, offset; `filter`: electronics; `band`: duration and frequency of the source
+//! - `ambient`: the noise, its spectrum, and noise of the same kind for computed records
+//! - `distinct`: the waves in a receiver; `chosen`: the one of the mode
 //! - `separated`: the arrival without crosstalk; `forward`: computed records; `travel_time`: picks with bias and error
 
+mod ambient;
 mod band;
+mod chosen;
 mod cleaned;
+mod distinct;
 mod filter;
 mod forward;
 mod passage;

@@ -8,15 +8,15 @@ const SHARE: f64 = 1e-9;
 /// Rounding of a distance, in units in the last place of the coordinates.
 const ROUNDING: f64 = 64.0;
 
-/// No contact presses or pulls more than this many times as hard as Hertz's law at its overlap: far more than viscous
-/// forces, another contact law or another material in the same units make of it.
+/// No contact presses or pulls more than this many times as hard as its law at its overlap, nor at the mean overlap: far more than
+/// viscous forces make of it. At small overlaps, the forces of other laws and of dashpots exceed Hertz's by any factor.
 const HARDEST: f64 = 100.0;
 
 impl Packing {
     /// The packing itself if its numbers belong together, else the first fault found: ids that are all different, a solid
-    /// fraction of at most 1, overlaps and normals those of positions and radii to 1e-9 and rounding, no contact twice (a
-    /// grain touches an own image on both sides at once, which is one contact), normal forces of at most a hundred times
-    /// Hertz's. The packing is taken to be a [validated](Packing::validated) one. Linear in grains and contacts, but for the
+    /// fraction of at most 1, overlaps and normals that follow from positions and radii to 1e-9 and rounding, no contact twice (a
+    /// grain touches an own image on both sides at once, which is one contact), normal forces of at most a hundred times the forces
+    /// of the contact law. The packing is taken to be a [validated](Packing::validated) one. Linear in grains and contacts, but for the
     /// sorting of ids that are out of order.
     ///
     /// Not checked is whether all contacts are listed, nor whether forces balance: a packing in motion is one, too.
@@ -38,8 +38,10 @@ impl Packing {
             });
         }
         let cell = self.cell.matrix().amax();
+        let usual =
+            self.contacts.iter().map(|c| self.law_force(c)).sum::<f64>() / self.contacts.len().max(1) as f64;
         for (index, c) in self.contacts.iter().enumerate() {
-            self.check_contact(c, cell)?;
+            self.check_contact(c, cell, usual)?;
             // Both names of the contact with an own image are next to each other in the list of that grain.
             let opposite = c.image.map(|k| k.saturating_neg());
             if c.i == c.j && opposite < c.image {
@@ -50,15 +52,6 @@ impl Packing {
             }
         }
         Ok(())
-    }
-
-    /// Mean difference of the normal forces from those of the contact law at the same overlaps, over the mean of the latter; 0
-    /// without contacts. Forces of another law or material, and of a packing in motion, differ.
-    pub fn law_difference(&self) -> f64 {
-        let law =
-            |c: &Contact| self.law.normal_force(&self.material, self.effective_radius(c), c.overlap.max(0.0));
-        let difference: f64 = self.contacts.iter().map(|c| (c.normal_force - law(c)).abs()).sum();
-        if difference == 0.0 { 0.0 } else { difference / self.contacts.iter().map(law).sum::<f64>() }
     }
 
     fn check_ids(&self) -> Result<(), PackingError> {
@@ -75,12 +68,14 @@ impl Packing {
         }
     }
 
-    fn check_contact(&self, c: &Contact, cell: f64) -> Result<(), PackingError> {
+    /// `usual` is the mean normal force, N, of the contact law.
+    fn check_contact(&self, c: &Contact, cell: f64, usual: f64) -> Result<(), PackingError> {
         let (i, j) = (c.i as usize, c.j as usize);
         let branch = self.branch(c);
         let distance = branch.norm();
+        let ids = [c.i, c.j].map(|g| self.ids[g as usize]);
         let fault = |quantity, given, found| {
-            let [i, j] = [c.i, c.j].map(|g| self.ids[g as usize]);
+            let [i, j] = ids;
             Err(PackingError::Contradiction { i, j, quantity, given, found })
         };
         let steps = c.image.iter().map(|k| f64::from(k.unsigned_abs())).fold(1.0, f64::max);
@@ -92,17 +87,21 @@ impl Packing {
         if !overlaps {
             return fault("overlap (m)", c.overlap, overlap);
         }
-        let angle = (c.normal * distance - branch).norm();
-        if angle.is_nan() || angle > SHARE * distance + rounding {
-            return fault("angle of the normal (rad)", angle / distance, 0.0);
+        let chord = (c.normal * distance - branch).norm();
+        if chord.is_nan() || chord > SHARE * distance + rounding {
+            if (c.normal * distance + branch).norm() <= SHARE * distance + rounding {
+                let is_reversed = |c: &&Contact| c.normal.dot(&self.branch(c)) < 0.0;
+                let (reversed, contacts) =
+                    (self.contacts.iter().filter(is_reversed).count(), self.contacts.len());
+                let [i, j] = ids;
+                return Err(PackingError::ReversedNormal { i, j, reversed, contacts });
+            }
+            return fault("angle of the normal (rad)", 2.0 * (0.5 * chord / distance).min(1.0).asin(), 0.0);
         }
-        let most = HARDEST * self.law.normal_force(&self.material, self.effective_radius(c), c.overlap);
-        if c.normal_force.abs() > most {
-            return fault(
-                "normal force (N), at most a hundred times that of the contact law,",
-                c.normal_force,
-                most,
-            );
+        let law_force = self.law_force(c);
+        if c.normal_force.abs() > HARDEST * law_force.max(usual) {
+            let ([i, j], force, law) = (ids, c.normal_force, self.law.name());
+            return Err(PackingError::Force { i, j, force, law, law_force });
         }
         Ok(())
     }
@@ -151,8 +150,17 @@ mod tests {
         assert!(fault(|p| p.positions[1].x -= 1e-7).contains("overlap"));
         assert!(fault(|p| p.radii[0] *= 1e-3).contains("overlap"));
         assert!(fault(|p| p.contacts[0].image = [0, 0, 0]).contains("overlap"));
-        assert!(fault(|p| p.contacts[0].normal = -p.contacts[0].normal).contains("normal (rad)"));
-        assert!(fault(|p| p.contacts[0].normal_force *= 1e3).contains("normal force"));
+        let turned = fault(|p| p.contacts[0].normal = p.contacts[0].normal.cross(&Vec3::x()).normalize());
+        assert!(turned.contains("angle of the normal (rad)") && turned.contains("is 1.57"), "{turned}");
+        let reversed = fault(|p| p.contacts[0].normal = -p.contacts[0].normal);
+        assert!(
+            reversed.starts_with(
+                "the normals of 1 of 1 contacts point the wrong way, the first of grains 7 and 3"
+            ),
+            "{reversed}"
+        );
+        let force = fault(|p| p.contacts[0].normal_force *= 1e3);
+        assert!(force.contains("is 1049 times that of hertz_mindlin contacts at its overlap"), "{force}");
         assert!(fault(|p| p.radii = vec![0.4, 0.4]).contains("solid_fraction"));
     }
 

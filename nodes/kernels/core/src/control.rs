@@ -26,7 +26,8 @@ pub enum ServoLaw {
     Normalised {
         /// Share of the critical gain, above 0 and below 1.
         share: f64,
-        /// Share of the rate forgotten each control period, in [0, 1]; 0 leaves no error under plastic flow.
+        /// Share of the rate forgotten each control period, in [0, 1]. Above 0 no swing of the stress lasts, also where the packing
+        /// damps none, as a lattice; 0 leaves no error under plastic flow.
         leak: f64,
     },
     /// Eq. 1: rate ← (1 − leak)·rate + gain·(σ − σ*), once each control period.

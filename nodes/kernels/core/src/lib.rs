@@ -11,6 +11,9 @@
 //! - [`instruction_sets`]: work compiled for those of the processor
 //! - `packing`: grains, cell and contact network at one instant; [`contact_search`]: contacts by position
 //!   ([`Packing::consistent`] holds its contacts against its positions)
+//! - [`Packing::overlaps`]: how deep its contacts are, and up to which overlap a contact law holds
+//! - [`solid_like_share`]: whether grains have the surroundings of a crystal
+//! - [`Packing::crossings`]: whether contacts cross the cell everywhere, as in a periodic packing
 //! - [`non_rattlers`], [`min_contacts`]: grains that carry force
 //! - [`stress`]: the one definition of stress
 //! - `stiffness`: the 6×6 elastic stiffness and its transversely isotropic projection
@@ -21,14 +24,18 @@
 //! - [`quantity`]: tables of what is measured: key, symbol, unit, meaning, value
 
 mod bins;
+mod bond_order;
 mod cell;
 mod consistency;
 pub mod contact;
 pub mod contact_search;
 mod control;
+mod crossings;
 pub mod instruction_sets;
 pub mod lanes;
+mod law_comparison;
 mod material;
+mod overlaps;
 mod packing;
 mod power;
 pub mod quantity;
@@ -41,9 +48,13 @@ mod tensor;
 mod waves;
 
 pub use bins::sorted_into_bins;
+pub use bond_order::solid_like_share;
 pub use cell::Cell;
 pub use control::{ComponentControl, ServoLaw};
+pub use crossings::Crossings;
+pub use law_comparison::{LawComparison, OTHER_LAW};
 pub use material::{Material, effective_radius};
+pub use overlaps::{OVERLAP_LIMIT, Overlaps};
 pub use packing::{Contact, Packing, PackingError};
 pub use rattlers::{backbone, min_contacts, non_rattlers};
 pub use stiffness::{Stiffness, TransverseIsotropy};

@@ -1,5 +1,10 @@
 //! The grain's material.
 
+use std::ops::RangeInclusive;
+
+/// Shear moduli of grains, Pa, that are not implausible: the softest gels have about 1e3, and diamond has 5e11.
+const SHEAR_MODULI: RangeInclusive<f64> = 1e3..=1e12;
+
 /// Elastic material of a grain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
@@ -23,6 +28,19 @@ impl Material {
     /// Effective shear modulus G* = G/(2(2−ν)) of two grains of this material, Pa.
     pub fn effective_shear(&self) -> f64 {
         self.shear_modulus / (2.0 * (2.0 - self.poisson_ratio))
+    }
+
+    /// Returns what is implausible about the shear modulus, as after "the shear modulus is".
+    pub fn shear_modulus_doubt(&self) -> Option<String> {
+        let shear_modulus = self.shear_modulus;
+        (!SHEAR_MODULI.contains(&shear_modulus)).then(|| {
+            let than = if shear_modulus < *SHEAR_MODULI.start() {
+                "softer than gels"
+            } else {
+                "stiffer than diamond"
+            };
+            format!("{shear_modulus} Pa, {than}: is its unit Pa?")
+        })
     }
 
     /// Mass of a sphere of radius `radius` (m), kg.

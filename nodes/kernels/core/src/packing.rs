@@ -182,8 +182,41 @@ pub enum PackingError {
         quantity: &'static str,
         /// As the contact has it.
         given: f64,
-        /// As positions and radii have it; the limit, for a force.
+        /// As positions and radii have it.
         found: f64,
+    },
+    /// Normals point from the second grain of a contact to the first.
+    #[error(
+        "the normals of {reversed} of {contacts} contacts point the wrong way, the first of grains {i} and {j}: a normal points from the \
+         centre of the first grain to the one of the second; reverse these normals"
+    )]
+    ReversedNormal {
+        /// Id of the first grain of the first such contact.
+        i: u32,
+        /// Id of the second grain.
+        j: u32,
+        /// Number of contacts whose normal points the wrong way.
+        reversed: usize,
+        /// Number of contacts.
+        contacts: usize,
+    },
+    /// A normal force is far beyond the contact law.
+    #[error(
+        "the normal force of the contact of grains {i} and {j}, {force:.4e} N, is {:.0} times that of {law} contacts at its overlap \
+         ({law_force:.4e} N): it belongs to another contact law, to another material, or to another state than the positions",
+        (force / law_force).abs()
+    )]
+    Force {
+        /// Id of the first grain.
+        i: u32,
+        /// Id of the second grain.
+        j: u32,
+        /// Normal force, N, as the contact has it.
+        force: f64,
+        /// Name of the contact law.
+        law: &'static str,
+        /// Normal force, N, of the law at this overlap.
+        law_force: f64,
     },
     /// Contacts are not strictly sorted by (i, j, image) with i ≤ j.
     #[error(
@@ -299,6 +332,12 @@ impl Packing {
     /// Number of grains.
     pub fn grains(&self) -> usize {
         self.radii.len()
+    }
+
+    /// Memory of its grains and contacts, bytes.
+    pub fn bytes(&self) -> usize {
+        let grain = size_of::<u32>() + size_of::<f64>() + 3 * size_of::<Vec3>();
+        self.grains() * grain + self.contacts.len() * size_of::<Contact>()
     }
 
     /// The deformation of a packing without a reference state.

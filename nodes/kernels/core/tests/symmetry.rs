@@ -2,51 +2,29 @@
 
 use grainlab_core::{Mat3, Stiffness, TransverseIsotropy, Vec3};
 use grainlab_core::{Symmetry, SymmetryClass, symmetry};
-use nalgebra::{Matrix6, Rotation3};
+use grainlab_testkit::Random;
+use grainlab_testkit::packings::cubic;
+use nalgebra::Matrix6;
 
-/// Numbers in [0, 1) from a 64-bit linear congruential generator.
-struct Dice(u64);
-
-impl Dice {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn normal(&mut self) -> f64 {
-        (-2.0 * (1.0 - self.next()).ln()).sqrt() * (std::f64::consts::TAU * self.next()).cos()
-    }
-
-    fn rotation(&mut self) -> Mat3 {
-        let axis = Vec3::from_fn(|_, _| self.normal());
-        *Rotation3::new(axis.normalize() * std::f64::consts::PI * self.next()).matrix()
-    }
-
-    /// Symmetric, normal entries of unit variance in the Mandel norm, as a Voigt matrix.
-    fn noise(&mut self) -> Matrix6<f64> {
-        let a = Matrix6::from_fn(|_, _| self.normal());
-        let mandel = (a + a.transpose()) * 0.5;
-        let w = |i: usize| if i < 3 { 1.0 } else { std::f64::consts::FRAC_1_SQRT_2 };
-        Matrix6::from_fn(|i, j| mandel[(i, j)] * w(i) * w(j))
-    }
+fn rotation(dice: &mut Random) -> Mat3 {
+    *dice.rotation().matrix()
 }
 
-fn cubic(c11: f64, c12: f64, c44: f64) -> Stiffness {
-    Stiffness(Matrix6::from_fn(|i, j| match (i == j, i < 3, j < 3) {
-        (true, true, _) => c11,
-        (true, false, _) => c44,
-        (false, true, true) => c12,
-        _ => 0.0,
-    }))
+/// Symmetric, normal entries of unit variance in the Mandel norm, as a Voigt matrix.
+fn noise(dice: &mut Random) -> Matrix6<f64> {
+    let a = Matrix6::from_fn(|_, _| dice.normal());
+    let mandel = (a + a.transpose()) * 0.5;
+    let w = |i: usize| if i < 3 { 1.0 } else { std::f64::consts::FRAC_1_SQRT_2 };
+    Matrix6::from_fn(|i, j| mandel[(i, j)] * w(i) * w(j))
 }
 
-fn axial(dice: &mut Dice) -> TransverseIsotropy {
+fn axial(dice: &mut Random) -> TransverseIsotropy {
     TransverseIsotropy {
-        c11: 300.0 + 60.0 * dice.next(),
-        c12: 60.0 + 60.0 * dice.next(),
-        c13: 60.0 + 60.0 * dice.next(),
-        c33: 300.0 + 120.0 * dice.next(),
-        g13: 90.0 + 90.0 * dice.next(),
+        c11: 300.0 + 60.0 * dice.unit(),
+        c12: 60.0 + 60.0 * dice.unit(),
+        c13: 60.0 + 60.0 * dice.unit(),
+        c33: 300.0 + 120.0 * dice.unit(),
+        g13: 90.0 + 90.0 * dice.unit(),
         g12: 0.0,
         residual: 0.0,
     }
@@ -58,11 +36,11 @@ fn found(c: &Stiffness, tolerance: f64) -> Symmetry {
 
 #[test]
 fn a_transversely_isotropic_stiffness_of_any_axis_gives_back_its_moduli_and_its_axis() {
-    let mut dice = Dice(1);
+    let mut dice = Random::new(1);
     for _ in 0..200 {
         let mut moduli = axial(&mut dice);
         moduli.g12 = (moduli.c11 - moduli.c12) / 2.0;
-        let r = dice.rotation();
+        let r = rotation(&mut dice);
         let s = found(&moduli.stiffness().rotated(&r), 1e-9);
         assert_eq!(s.class, SymmetryClass::TransverselyIsotropic, "{s:?}");
         assert!(s.transversely_isotropic < 1e-12, "{:e}", s.transversely_isotropic);
@@ -80,7 +58,7 @@ fn a_transversely_isotropic_stiffness_of_any_axis_gives_back_its_moduli_and_its_
 #[test]
 fn an_isotropic_stiffness_has_no_axis_to_lose_itself_over() {
     let c = cubic(360.0, 80.0, 140.0);
-    let s = found(&c.rotated(&Dice(2).rotation()), 1e-12);
+    let s = found(&c.rotated(&rotation(&mut Random::new(2))), 1e-12);
     assert_eq!(s.class, SymmetryClass::Isotropic);
     assert!(s.isotropic < 1e-14 && s.cubic < 1e-14 && s.transversely_isotropic < 1e-14);
     assert!((s.axis.norm() - 1.0).abs() < 1e-12);
@@ -88,11 +66,11 @@ fn an_isotropic_stiffness_has_no_axis_to_lose_itself_over() {
 
 #[test]
 fn a_cubic_stiffness_is_cubic_whichever_way_it_is_turned() {
-    let mut dice = Dice(3);
+    let mut dice = Random::new(3);
     for k in 0..100 {
         // Stiff along the edges, or along the diagonals.
         let (c11, c44) = if k % 2 == 0 { (400.0, 100.0) } else { (250.0, 150.0) };
-        let r = dice.rotation();
+        let r = rotation(&mut dice);
         let s = found(&cubic(c11, 80.0, c44).rotated(&r), 1e-9);
         assert_eq!(s.class, SymmetryClass::Cubic, "{k}: {s:?}");
         assert!(s.cubic < 1e-12 && s.transversely_isotropic > 0.01 && s.orthotropic < 1e-9);
@@ -104,17 +82,17 @@ fn a_cubic_stiffness_is_cubic_whichever_way_it_is_turned() {
 
 #[test]
 fn nine_constants_are_orthotropic_and_one_more_is_lower() {
-    let mut dice = Dice(4);
+    let mut dice = Random::new(4);
     for _ in 0..100 {
         let mut c = cubic(350.0, 80.0, 130.0);
         for i in 0..6 {
-            c.0[(i, i)] *= 0.8 + 0.4 * dice.next();
+            c.0[(i, i)] *= 0.8 + 0.4 * dice.unit();
         }
         for (i, j) in [(0, 1), (0, 2), (1, 2)] {
-            c.0[(i, j)] *= 0.6 + 0.8 * dice.next();
+            c.0[(i, j)] *= 0.6 + 0.8 * dice.unit();
             c.0[(j, i)] = c.0[(i, j)];
         }
-        let s = found(&c.rotated(&dice.rotation()), 1e-9);
+        let s = found(&c.rotated(&rotation(&mut dice)), 1e-9);
         assert_eq!(s.class, SymmetryClass::Orthotropic, "{s:?}");
         assert!(s.orthotropic < 1e-10 && s.isotropic >= s.cubic && s.cubic >= s.orthotropic);
         let mut d = c;
@@ -129,9 +107,9 @@ fn nine_constants_are_orthotropic_and_one_more_is_lower() {
 /// The minimum is the minimum: no frame of many does better, for stiffnesses of no symmetry at all.
 #[test]
 fn no_other_axis_is_nearer_for_a_stiffness_without_symmetry() {
-    let mut dice = Dice(5);
+    let mut dice = Random::new(5);
     for _ in 0..30 {
-        let c = Stiffness(cubic(350.0, 90.0, 130.0).0 + dice.noise() * 30.0);
+        let c = Stiffness(cubic(350.0, 90.0, 130.0).0 + noise(&mut dice) * 30.0);
         let s = found(&c, 1e-3);
         let mut best = f64::INFINITY;
         for _ in 0..1000 {
@@ -146,10 +124,11 @@ fn no_other_axis_is_nearer_for_a_stiffness_without_symmetry() {
 /// Every residual is a property of the medium, not of the frame it is written in.
 #[test]
 fn residuals_do_not_depend_on_the_frame() {
-    let mut dice = Dice(6);
+    let mut dice = Random::new(6);
     for k in 0..60 {
-        let c = Stiffness(cubic(350.0, 90.0, 130.0).0 + dice.noise() * if k % 2 == 0 { 3.0 } else { 30.0 });
-        let (a, b) = (found(&c, 0.02), found(&c.rotated(&dice.rotation()), 0.02));
+        let c =
+            Stiffness(cubic(350.0, 90.0, 130.0).0 + noise(&mut dice) * if k % 2 == 0 { 3.0 } else { 30.0 });
+        let (a, b) = (found(&c, 0.02), found(&c.rotated(&rotation(&mut dice)), 0.02));
         let pairs = [
             (a.isotropic, b.isotropic),
             (a.cubic, b.cubic),
@@ -166,13 +145,13 @@ fn residuals_do_not_depend_on_the_frame() {
 /// Noise below the tolerance changes no class; noise above it lowers the class.
 #[test]
 fn the_tolerance_decides_what_is_noise() {
-    let mut dice = Dice(7);
+    let mut dice = Random::new(7);
     let mut moduli = axial(&mut dice);
     (moduli.c33, moduli.g13, moduli.g12) = (450.0, 180.0, (moduli.c11 - moduli.c12) / 2.0);
     let exact = moduli.stiffness();
     let norm = exact.mandel().norm();
     for _ in 0..20 {
-        let noise = dice.noise();
+        let noise = noise(&mut dice);
         let share = Stiffness(noise).mandel().norm() / norm;
         let noisy = Stiffness(exact.0 + noise * (0.01 / share));
         let s = found(&noisy, 0.01);

@@ -26,7 +26,7 @@ pub enum DemError {
     /// Two grains overlap far beyond the validity of Hertz's law.
     #[error(
         "at step {step} grains {first} and {second} overlap by {overlap:e} m, more than a tenth of a diameter; \
-         lower the strain rates, the stress targets or the gas speed"
+         lower the strain rates, the stress targets or the gas speed, or check the packing that the run starts from"
     )]
     Overlap {
         /// Number of the solver step.

@@ -31,7 +31,6 @@ pub use domain::compute::{Compute, ComputeError};
 pub use engine::checkpoint::Checkpoint;
 pub use engine::engine::Engine;
 pub use error::DemError;
-pub use observe::contact_sums::OVERLAP_LIMIT;
 pub use observe::energy::EnergyBalance;
 pub use observe::observables::Observables;
 pub use settings::{EngineSettings, Features, TimeStep};

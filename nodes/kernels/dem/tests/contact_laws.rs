@@ -5,13 +5,13 @@ use grainlab_core::contact::{
 };
 use grainlab_core::effective_radius;
 use grainlab_core::lanes::LaneVec3;
-use grainlab_core::{Cell, Material, Vec3};
-use grainlab_dem::{Engine, EngineSettings, TimeStep};
+use grainlab_core::{Cell, Vec3};
+use grainlab_dem::{Engine, EngineSettings};
+use grainlab_testkit::Random;
+use grainlab_testkit::engine::{GLASS, RADIUS, setting};
 use nalgebra::{Rotation3, Unit};
 use std::marker::PhantomData;
 
-const RADIUS: f64 = 1e-4;
-const GLASS: Material = Material::GLASS;
 const DT: f64 = 1e-8;
 
 /// Something that holds for every law.
@@ -187,16 +187,12 @@ fn no_closed_cycle_creates_energy_with_the_rescaled_history() {
     impl Claim for Cycles {
         fn check<S: ContactSprings>(springs: S, law: ContactLaw) {
             let (low, high) = (1e-8, 4e-8);
-            let mut random = 12345u64;
-            let mut next = || {
-                random = random.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-                (random >> 11) as f64 / (1u64 << 53) as f64
-            };
+            let mut random = Random::new(12345);
+            let mut place = || (low + high * random.unit(), 2e-8 * (random.unit() - 0.5));
             // Closed paths, with and without sliding.
             for friction in [0.1, 0.5, 1e9] {
                 for _ in 0..200 {
-                    let mut path: Vec<(f64, f64)> =
-                        (0..6).map(|_| (low + high * next(), 2e-8 * (next() - 0.5))).collect();
+                    let mut path: Vec<(f64, f64)> = (0..6).map(|_| place()).collect();
                     path.push(path[0]);
                     let work = work_over_cycle(springs, TangentialLaw::Rescaled, &path, friction);
                     // The trapezium rule is exact to about 1e-6 on these legs.
@@ -257,12 +253,7 @@ fn a_rigid_rotation_of_a_loaded_pair_rotates_its_forces() {
 fn collision(law: ContactLaw, damping: f64, speed: f64) -> (f64, f64, f64) {
     let cell = Cell::cube(20.0 * RADIUS).unwrap();
     let x = [Vec3::zeros(), Vec3::x() * (2.0 * RADIUS * (1.0 + 1e-9))];
-    let settings = EngineSettings {
-        damping,
-        skin: 0.1 * RADIUS,
-        time_step: TimeStep::Fixed(1e-10),
-        ..EngineSettings::default()
-    };
+    let settings = EngineSettings { damping, ..setting(EngineSettings::default().friction, 1e-10) };
     let mut e = Engine::new(cell, GLASS, vec![RADIUS; 2], &x, settings).unwrap().with_law(law).unwrap();
     e.set_velocities(&[Vec3::x() * (0.5 * speed), Vec3::x() * (-0.5 * speed)]).unwrap();
     e.initialise().unwrap();
@@ -348,13 +339,7 @@ fn restitution_of_linear_springs_is_that_of_a_damped_oscillator_without_attracti
 /// FNV-1a of positions, spins and tangential forces after 20,000 steps of 30 grains that are compressed and sheared.
 fn trajectory(law: ContactLaw) -> u64 {
     let gas = grainlab_dem::gas::random_sequential_addition(30, 2.0 * RADIUS, 0.35, 0.1, 5).unwrap();
-    let settings = EngineSettings {
-        friction: 0.3,
-        damping: 0.1,
-        skin: 0.1 * RADIUS,
-        time_step: TimeStep::Fixed(2e-8),
-        ..EngineSettings::default()
-    };
+    let settings = EngineSettings { damping: 0.1, ..setting(0.3, 2e-8) };
     let mut e = Engine::new(gas.cell, GLASS, vec![RADIUS; 30], &gas.positions, settings)
         .unwrap()
         .with_law(law)

@@ -3,8 +3,7 @@
 use grainlab_core::contact::{ContactLaw, Linear, RollingResistance, SpringLaw, TangentialLaw};
 use grainlab_core::{Cell, Mat3, Material, Vec3};
 use grainlab_dem::{Compute, EnergyBalance, Engine, EngineSettings, Simd, TimeStep, gas};
-
-const RADIUS: f64 = 1e-4;
+use grainlab_testkit::engine::{RADIUS, setting};
 
 /// As stiff as glass at some 100 kPa.
 const LINEAR: SpringLaw = SpringLaw::Linear(Linear { normal_stiffness: 2e5, stiffness_ratio: 0.5 });
@@ -22,15 +21,8 @@ const LAWS: [ContactLaw; 6] = [
 ];
 
 fn settings(friction: f64) -> EngineSettings {
-    EngineSettings {
-        friction,
-        damping: 0.1,
-        drag: 50.0,
-        spin_drag: 50.0,
-        skin: 0.1 * RADIUS,
-        time_step: TimeStep::FractionOfStable(0.8),
-        ..EngineSettings::default()
-    }
+    let time_step = TimeStep::FractionOfStable(0.8);
+    EngineSettings { damping: 0.1, drag: 50.0, spin_drag: 50.0, time_step, ..setting(friction, 0.0) }
 }
 
 /// A channel of the balance.
@@ -94,30 +86,13 @@ fn closes(law: ContactLaw, friction: f64, tangential: TangentialLaw) {
 }
 
 #[test]
-fn the_balance_of_frictionless_hertz_closes_to_rounding() {
+fn the_balance_closes_to_rounding_under_every_law() {
     closes(LAWS[0], 0.0, TangentialLaw::Rescaled);
-}
-
-#[test]
-fn the_balance_of_hertz_mindlin_closes_to_rounding() {
-    closes(LAWS[0], 0.3, TangentialLaw::Rescaled);
-}
-
-#[test]
-fn the_balance_of_linear_springs_closes_to_rounding() {
-    closes(LAWS[1], 0.3, TangentialLaw::Rescaled);
-}
-
-#[test]
-fn the_balance_of_rough_grains_closes_to_rounding() {
-    closes(LAWS[4], 0.3, TangentialLaw::Rescaled);
-}
-
-#[test]
-fn the_balance_closes_with_resistance_to_rolling() {
-    closes(LAWS[2], 0.3, TangentialLaw::Rescaled);
-    closes(LAWS[3], 0.3, TangentialLaw::Incremental);
     closes(LAWS[2], 0.0, TangentialLaw::Rescaled);
+    for law in [LAWS[0], LAWS[1], LAWS[2], LAWS[4]] {
+        closes(law, 0.3, TangentialLaw::Rescaled);
+    }
+    closes(LAWS[3], 0.3, TangentialLaw::Incremental);
 }
 
 /// Expected: the balance changes no bit of a run, with one thread or two; and the thermostat has its channel.
@@ -144,12 +119,7 @@ fn the_balance_changes_nothing() {
 
 /// Two spheres that meet obliquely without slip, seen during their collision, after `steps` of 2e-7 s in all.
 fn collision(law: ContactLaw, steps: u32) -> EnergyBalance {
-    let settings = EngineSettings {
-        friction: f64::INFINITY,
-        skin: 0.1 * RADIUS,
-        time_step: TimeStep::Fixed(2e-7 / f64::from(steps)),
-        ..EngineSettings::default()
-    };
+    let settings = setting(f64::INFINITY, 2e-7 / f64::from(steps));
     let cell = Cell::cube(20.0 * RADIUS).unwrap();
     let x = [Vec3::zeros(), Vec3::x() * (2.0 * RADIUS)];
     let mut e =

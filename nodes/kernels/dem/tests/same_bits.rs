@@ -1,31 +1,31 @@
 //! Results do not depend on instruction set, threads, or how steps are grouped.
 
-use grainlab_core::contact::TangentialLaw;
-use grainlab_core::{Mat3, Material, Packing, Vec3};
+use grainlab_core::contact::{ContactLaw, RollingResistance, SpringLaw, TangentialLaw};
+use grainlab_core::{Contact, Mat3, Material, Vec3};
 use grainlab_dem::{Compute, Engine, EngineSettings, Simd, TimeStep, gas};
-
-const RADIUS: f64 = 1e-4;
+use grainlab_testkit::engine::{self, RADIUS, bits, packing};
 
 /// Grains enough for several threads to have something to do: more than two of the parts that they work on.
 const PARTS: u32 = 4500;
 
 fn setting(friction: f64, tangential: TangentialLaw) -> EngineSettings {
-    EngineSettings {
-        friction,
-        damping: 0.2,
-        tangential,
-        time_step: TimeStep::FractionOfStable(0.5),
-        skin: 0.1 * RADIUS,
-        ..EngineSettings::default()
-    }
+    let time_step = TimeStep::FractionOfStable(0.5);
+    EngineSettings { damping: 0.2, tangential, time_step, ..engine::setting(friction, 0.0) }
+}
+
+/// Returns the law of smooth grains with these springs and resistance to rolling.
+fn rolling(springs: SpringLaw) -> ContactLaw {
+    let resistance = RollingResistance { stiffness: 1e4, damping: 1e-3, friction: 0.1 };
+    ContactLaw::of(springs).with_rolling(resistance)
 }
 
 /// A gas that is strained into contact; `unequal` mixes sizes.
-fn start(grains: u32, setting: EngineSettings, unequal: bool, compute: Compute) -> Engine {
+fn start(grains: u32, law: ContactLaw, setting: EngineSettings, unequal: bool, compute: Compute) -> Engine {
     let gas = gas::random_sequential_addition(grains, 2.0 * RADIUS, 0.35, 0.2, 7).unwrap();
     let radius = |i: u32| if unequal && i.is_multiple_of(3) { 0.8 * RADIUS } else { RADIUS };
     let radii = (0..grains).map(radius).collect();
-    let mut engine = Engine::new(gas.cell, Material::GLASS, radii, &gas.positions, setting).unwrap();
+    let engine = Engine::new(gas.cell, Material::GLASS, radii, &gas.positions, setting).unwrap();
+    let mut engine = engine.with_law(law).unwrap();
     engine.set_compute(compute);
     engine.set_velocities(&gas.velocities).unwrap();
     engine.set_spins(&gas.velocities.iter().map(|v| v.cross(&Vec3::x()) * 1e4).collect::<Vec<_>>()).unwrap();
@@ -35,24 +35,18 @@ fn start(grains: u32, setting: EngineSettings, unequal: bool, compute: Compute) 
     engine
 }
 
-/// Every number of the state.
-fn bits(p: &Packing) -> Vec<u64> {
-    let vectors = [&p.positions, &p.velocities, &p.spins];
-    let mut all: Vec<f64> = vectors.iter().flat_map(|v| v.iter().flat_map(|x| [x.x, x.y, x.z])).collect();
-    all.extend(p.cell.matrix().iter());
-    for c in &p.contacts {
-        let t = c.tangential_force;
-        all.extend([f64::from(c.i), f64::from(c.j), c.overlap, c.normal_force, t.x, t.y, t.z]);
-    }
-    all.extend([p.time, p.time_step]);
-    all.iter().map(|v| v.to_bits()).collect()
-}
-
 fn end(mut engine: Engine, steps: u32) -> Vec<u64> {
     let compute = engine.compute().clone();
     compute.install(|| engine.run(steps)).unwrap();
-    let packing = engine.packing(Mat3::identity());
+    seen(&engine)
+}
+
+/// Every number of a packing with contacts, which roll where the law resists.
+fn seen(engine: &Engine) -> Vec<u64> {
+    let packing = packing(engine);
     assert!(packing.contacts.len() > 50, "{} contacts", packing.contacts.len());
+    let rolled = packing.contacts.iter().filter(|c| c.rolling_force.norm() > 0.0).count();
+    assert_eq!(rolled > 20, packing.law.rolling.is_some(), "{rolled} contacts with a rolling force");
     bits(&packing)
 }
 
@@ -62,33 +56,24 @@ fn every_instruction_set_gives_the_same_bits_in_every_feature_set() {
         Simd::available().len() > 1 || !cfg!(target_arch = "x86_64"),
         "nothing to compare on this processor"
     );
+    let mut cases = Vec::new();
     for friction in [0.0, 0.3, f64::INFINITY] {
         for tangential in [TangentialLaw::Rescaled, TangentialLaw::Incremental] {
-            for unequal in [false, true] {
-                // Small grains take longer to meet.
-                let steps = if unequal { 6000 } else { 3000 };
-                let run = |simd| {
-                    let compute = Compute::new(simd, 1).unwrap();
-                    end(start(300, setting(friction, tangential), unequal, compute), steps)
-                };
-                let scalar = run(Simd::Scalar);
-                for simd in Simd::available() {
-                    assert!(run(simd) == scalar, "{simd}, friction {friction}, {tangential:?}, {unequal}");
-                }
-            }
+            cases.extend([false, true].map(|unequal| (ContactLaw::default(), friction, tangential, unequal)));
         }
     }
-}
-
-#[test]
-fn states_after_ten_thousand_steps_are_the_same_with_one_two_and_four_threads() {
-    let run = |threads| {
-        let compute = Compute::new(Simd::best(), threads).unwrap();
-        end(start(PARTS, setting(0.3, TangentialLaw::Rescaled), false, compute), 10_000)
-    };
-    let one = run(1);
-    for threads in [2, 4] {
-        assert!(run(threads) == one, "{threads} threads");
+    cases.extend(SpringLaw::EXAMPLES.map(|law| (rolling(law), 0.3, TangentialLaw::Rescaled, true)));
+    for (law, friction, tangential, unequal) in cases {
+        // Small grains take longer to meet.
+        let steps = if unequal { 6000 } else { 3000 };
+        let run = |simd| {
+            let compute = Compute::new(simd, 1).unwrap();
+            end(start(300, law, setting(friction, tangential), unequal, compute), steps)
+        };
+        let scalar = run(Simd::Scalar);
+        for simd in Simd::available() {
+            assert!(run(simd) == scalar, "{simd}, {law}, friction {friction}, {tangential:?}, {unequal}");
+        }
     }
 }
 
@@ -97,7 +82,8 @@ fn states_after_ten_thousand_steps_are_the_same_with_one_two_and_four_threads() 
 fn journey(threads: &[usize], unequal: bool) -> Vec<u64> {
     let compute = |leg: usize| Compute::new(Simd::best(), threads[leg % threads.len()]).unwrap();
     let gas = EngineSettings { thermostat_speed: Some(0.15), ..setting(0.0, TangentialLaw::Rescaled) };
-    let mut engine = start(PARTS, gas, unequal, compute(0));
+    let law = if unequal { rolling(SpringLaw::HertzMindlin) } else { ContactLaw::default() };
+    let mut engine = start(PARTS, law, gas, unequal, compute(0));
     let (mut seen, mut contacts) = (Vec::new(), 0);
     for leg in 0..12 {
         engine.set_compute(compute(leg));
@@ -118,7 +104,7 @@ fn journey(threads: &[usize], unequal: bool) -> Vec<u64> {
         let look = engine.observables().unwrap();
         seen.extend(look.stress.tensor.voigt().iter().chain(&look.tangent).map(|v| v.to_bits()));
         seen.extend([look.unbalanced.to_bits(), engine.speed().to_bits()]);
-        let packing = engine.packing(Mat3::identity());
+        let packing = packing(&engine);
         seen.extend(bits(&packing));
         contacts = contacts.max(packing.contacts.len());
     }
@@ -138,12 +124,14 @@ fn threads_may_come_and_go_along_the_way() {
 
 #[test]
 fn steps_one_by_one_and_steps_together_are_the_same() {
-    let engine = || start(300, setting(0.3, TangentialLaw::Rescaled), false, Compute::default());
+    let engine = || {
+        start(300, ContactLaw::default(), setting(0.3, TangentialLaw::Rescaled), false, Compute::default())
+    };
     let mut single = engine();
     for _ in 0..2500 {
         single.step().unwrap();
     }
-    assert!(bits(&single.packing(Mat3::identity())) == end(engine(), 2500));
+    assert!(bits(&packing(&single)) == end(engine(), 2500));
 }
 
 #[test]
@@ -152,7 +140,7 @@ fn the_stress_measured_along_the_way_is_that_of_a_snapshot_where_nothing_is_damp
     let compute = |threads| Compute::new(Simd::best(), threads).unwrap();
     let mut ends = Vec::new();
     for threads in [1, 2] {
-        let mut engine = start(PARTS, undamped, true, compute(threads));
+        let mut engine = start(PARTS, ContactLaw::default(), undamped, true, compute(threads));
         let mut measured = Vec::new();
         engine.run_with_stress(3000, |s| measured.push(s.voigt())).unwrap();
         assert_eq!(measured.len(), 3000);
@@ -170,23 +158,33 @@ fn the_stress_measured_along_the_way_is_that_of_a_snapshot_where_nothing_is_damp
 #[test]
 fn the_order_of_grains_in_memory_does_not_change_what_happens() {
     let short = |sorted: bool| {
-        let mut engine = start(PARTS, setting(0.3, TangentialLaw::Rescaled), true, Compute::default());
+        let setting = setting(0.3, TangentialLaw::Rescaled);
+        let mut engine = start(PARTS, rolling(SpringLaw::HertzMindlin), setting, true, Compute::default());
         engine.run(1500).unwrap();
         if sorted {
             engine.sort_spatially();
             engine.initialise().unwrap();
         }
         engine.run(100).unwrap();
-        let packing = engine.packing(Mat3::identity());
-        let mut grains: Vec<_> = packing.ids.iter().copied().zip(packing.positions.clone()).collect();
+        let packing = packing(&engine);
+        let place = |k: u32| (packing.ids[k as usize], packing.positions[k as usize]);
+        let mut grains: Vec<_> = (0..PARTS).map(place).collect();
         grains.sort_by_key(|g| g.0);
-        (grains, packing.contacts.len())
+        let ids = |c: &Contact| [c.i, c.j].map(|k| packing.ids[k as usize]);
+        let mut forces: Vec<_> = packing.contacts.iter().map(|c| (ids(c), c.rolling_force)).collect();
+        forces.iter_mut().for_each(|(ids, _)| ids.sort_unstable());
+        forces.sort_by_key(|f| f.0);
+        (grains, forces)
     };
     let (sorted, plain) = (short(true), short(false));
-    assert_eq!(sorted.1, plain.1);
     for ((a, x), (b, y)) in sorted.0.iter().zip(&plain.0) {
         assert_eq!(a, b);
         assert!((x - y).norm() < 1e-12 * RADIUS, "grain {a}: {:e}", (x - y).norm());
+    }
+    let largest = plain.1.iter().map(|f| f.1.norm()).fold(0.0, f64::max);
+    assert!(largest > 0.0 && sorted.1.len() == plain.1.len());
+    for (a, b) in sorted.1.iter().zip(&plain.1) {
+        assert!(a.0 == b.0 && (a.1 - b.1).norm() < 1e-8 * largest, "{a:?} {b:?}");
     }
 }
 
@@ -205,7 +203,7 @@ fn kicked_grains_go_on_as_if_they_had_been_that_fast() {
     let setting = setting(0.3, TangentialLaw::Incremental);
     for threads in [1, 3] {
         let compute = Compute::new(Simd::best(), threads).unwrap();
-        let mut kicked = start(PARTS, setting, false, compute);
+        let mut kicked = start(PARTS, ContactLaw::default(), setting, false, compute);
         kicked.run(7).unwrap();
         let mut set = kicked.clone();
         let by = Vec3::new(1e-3, -2e-3, 5e-4);
@@ -217,7 +215,7 @@ fn kicked_grains_go_on_as_if_they_had_been_that_fast() {
         kicked.run(20).unwrap();
         set.run(20).unwrap();
         assert_eq!(kicked.packing(Mat3::identity()), set.packing(Mat3::identity()));
-        let mut without = start(PARTS, setting, false, Compute::default());
+        let mut without = start(PARTS, ContactLaw::default(), setting, false, Compute::default());
         without.run(27).unwrap();
         assert_ne!(kicked.velocities(), without.velocities());
     }

@@ -15,7 +15,7 @@ pub(crate) fn apart(value: f64, range: [f64; 2], digits: usize) -> [String; 3] {
 /// Texts of [`apart`] for a quantity of the state or structure of this name: p/E* is so small that decimals do not show it.
 pub(crate) fn of_quantity(quantity: &str, value: f64, range: [f64; 2]) -> [String; 3] {
     match quantity {
-        "p/E*" => written(value, range, 2, |v, digits| format!("{v:.digits$e}")),
+        _ if quantity.starts_with("p/E*") => written(value, range, 2, |v, digits| format!("{v:.digits$e}")),
         _ => apart(value, range, DIGITS),
     }
 }

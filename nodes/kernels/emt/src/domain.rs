@@ -98,7 +98,7 @@ impl Domain {
         }
         self.within("gamma/Delta", conditions.gamma.value, self.gamma)?;
         if let Some(ratio) = conditions.stress_ratio {
-            self.within("q/p", ratio.value, self.stress_ratio)?;
+            self.within("the axial stress ratio", ratio.value, self.stress_ratio)?;
         }
         if let Some(spread) = conditions.size_spread {
             self.within("the spread of the grain sizes", spread, self.size_spread)?;

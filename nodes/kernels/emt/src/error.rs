@@ -82,6 +82,21 @@ pub enum EmtError {
         /// Highest possible value.
         high: f64,
     },
+    /// Moduli from which a structure follows that no packing has.
+    #[error(
+        "unknown: from these moduli follows {quantity} = {value:.3}, outside {low} to {high}, the range of every packing of \
+         spheres: check the units of moduli and pressure (Pa), and the material"
+    )]
+    NoPacking {
+        /// Name of the quantity.
+        quantity: &'static str,
+        /// The value found.
+        value: f64,
+        /// Lowest value of a packing.
+        low: f64,
+        /// Highest value of a packing.
+        high: f64,
+    },
     /// Contacts that are not Hertz–Mindlin contacts.
     #[error(
         "unknown: the contact law is {law}; this model is for Hertz-Mindlin contacts, whose stiffness follows from the material \

@@ -51,7 +51,13 @@ impl Status {
         result.as_ref().map_or(Status::Unknown, |estimate| estimate.status)
     }
 
-    pub(crate) fn of_estimate(structure: &Microstructure, warnings: &[Warning]) -> Self {
+    /// Decides the status, and puts the warnings that decide it first.
+    pub(crate) fn of_estimate(structure: &Microstructure, warnings: &mut [Warning]) -> Self {
+        warnings.sort_by_key(|warning| match warning {
+            of if of.is_contradiction() => 0,
+            of if of.is_extrapolation() => 1,
+            _ => 2,
+        });
         if structure.values().iter().all(Option::is_none) {
             Status::Unknown
         } else if warnings.iter().any(Warning::is_contradiction) {
@@ -87,7 +93,7 @@ pub struct Estimate {
     pub misfit: Option<Misfit>,
     /// Status: model and calibration inside their range or not, data in agreement or not.
     pub status: Status,
-    /// Warnings about the estimate.
+    /// Warnings about the estimate; those that decide the status come first.
     pub warnings: Vec<Warning>,
     inputs: Option<InputCovariance>,
     /// That of the model: its independent quantities, from which the others follow, and their ranges.
@@ -142,7 +148,7 @@ impl Estimate {
         self.warnings.extend(checks::of_structure(&self.structure));
         let outside = outside_domain(&self.structure, &self.domain, &self.warnings);
         self.warnings.extend(outside);
-        self.status = Status::of_estimate(&self.structure, &self.warnings);
+        self.status = Status::of_estimate(&self.structure, &mut self.warnings);
         self.name_widest();
     }
 
@@ -278,11 +284,12 @@ pub(crate) fn assemble(
         }
     }
     domain.validate_solid_fraction(&observation.conditions)?;
+    checks::check_inferred(&structure)?;
     warnings.extend(checks::common(observation, calibration, uses_gamma, domain));
     warnings.extend(checks::of_structure(&structure));
     warnings.extend(outside_domain(&structure, domain, &warnings));
     warnings.extend(undetermined(&structure, domain));
-    let status = Status::of_estimate(&structure, &warnings);
+    let status = Status::of_estimate(&structure, &mut warnings);
     let mut estimate = Estimate {
         model,
         calibration: calibration.name().to_owned(),

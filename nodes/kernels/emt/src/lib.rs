@@ -97,7 +97,7 @@ pub use posterior::{Check, Draw, Draws, Evidence, ModulusCheck, Posterior, Poste
 pub use prior::{Density, Prior, PriorError};
 pub use registry::{free_contact, model, models, recommended};
 pub use series::{
-    ContactCorrections, ContactKind, ContactPrior, Interval, LawEstimate, LeftOut, PreparationPrior,
+    ContactCorrections, ContactKind, ContactPrior, Doubted, Interval, LawEstimate, LeftOut, PreparationPrior,
     PressureEstimate, RowEstimate, SampleQuantity, Sensitivity, SeriesEstimate, SeriesPrior, SeriesRow,
     SpeedMode, SpeedSeries, infer_series, series_stddev, simulate_series,
 };

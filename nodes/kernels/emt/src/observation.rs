@@ -7,7 +7,7 @@ use grainlab_core::results::PackingReport;
 use grainlab_core::{Mat3, Material, Stiffness};
 use nalgebra::{SMatrix, SymmetricEigen};
 
-/// Number of inputs of an inversion: the moduli, the pressure, γ/Δ, the solid fraction, the stress ratio q/p, the spread of
+/// Number of inputs of an inversion: the moduli, the pressure, γ/Δ, the solid fraction, the axial stress ratio, the spread of
 /// the sizes, and the shear modulus and Poisson ratio of the grains.
 pub const INPUTS: usize = MODULI + STATE_INPUTS;
 

@@ -9,12 +9,14 @@
 //! - `forward`: speeds and their slopes; `corrections`: contacts that the laws were not learned from; `component`: a normal approximation of the posterior for each cell of the prior;
 //!   `draws`: their correction by importance sampling
 //! - `plan`: experiments before they are made
-//! - `check`: pressures and rows left out, contradictions; `estimate`: what is stated; `single`: of
-//!   one pressure, for the model `free-contact`
+//! - `check`: pressures and rows left out, contradictions; `estimate`: what is stated; `single`: of one pressure, for the model
+//!   `free-contact`
+//! - `doubted`: z without rows that the others contradict; `sensitivity`: z under other assumptions
 
 mod check;
 mod component;
 mod corrections;
+mod doubted;
 mod draws;
 mod estimate;
 mod forward;
@@ -22,17 +24,18 @@ mod gain;
 mod plan;
 mod prior;
 mod sample;
+mod sensitivity;
 mod single;
 #[cfg(test)]
 mod tests;
 
 pub use check::LeftOut;
 pub use corrections::ContactCorrections;
-pub use estimate::{
-    Interval, LawEstimate, PressureEstimate, RowEstimate, Sensitivity, SeriesEstimate, infer_series,
-};
+pub use doubted::Doubted;
+pub use estimate::{Interval, LawEstimate, PressureEstimate, RowEstimate, SeriesEstimate, infer_series};
 pub use gain::ContactKind;
 pub use plan::{SampleQuantity, series_stddev, simulate_series};
 pub use prior::{ContactPrior, PreparationPrior, SeriesPrior};
 pub use sample::{SeriesRow, SpeedMode, SpeedSeries};
+pub use sensitivity::Sensitivity;
 pub(crate) use single::SingleEstimate;

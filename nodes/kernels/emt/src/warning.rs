@@ -64,10 +64,10 @@ pub enum Warning {
     /// γ/Δ is not known and was taken as zero.
     #[error("gamma/Delta is not known and was taken as 0")]
     GammaAssumedZero,
-    /// The stress ratio q/p is not known; [`crate::UNKNOWN_STRESS_RATIO`] was taken.
+    /// The axial stress ratio is not known; [`crate::UNKNOWN_STRESS_RATIO`] was taken.
     #[error(
-        "the stress ratio q/p is not known: it is 0 +- 0.15, cut at +- 0.3, in value and error; a sample at rest in its bed \
-         (K0, q/p about 0.75) is outside"
+        "the axial stress ratio is not known: it is 0 +- 0.15, cut at +- 0.3, in value and error; a sample at rest in its bed \
+         (K0, about 0.75) is outside"
     )]
     StressRatioUnknown,
     /// The sizes of the grains are not known; [`crate::UNKNOWN_SIZE_SPREAD`] was taken.
@@ -106,8 +106,8 @@ pub enum Warning {
     },
     /// Contacts have another law than those of the calibration.
     #[error(
-        "{law} contacts: their k_t/k_n is used, and {} is not, since the size of the grains is not known; z follows from the ratio \
-         of the moduli, and from simulated preparations", if *law == "rough" { "the roughness" } else { "the stiffness" }
+        "{law} contacts: the model takes their k_t/k_n, and not {}, because it takes no size of the grains; z follows from the ratio \
+         of the moduli, and from simulated preparations", if *law == "rough" { "their roughness" } else { "their stiffness" }
     )]
     ContactsStated {
         /// Name of the law.
@@ -134,6 +134,14 @@ pub enum Warning {
     HigherZ {
         /// Probability of a higher z.
         share: f64,
+    },
+    /// The posterior contains lower z than the packings of the calibration have.
+    #[error("{:.0} % of the posterior has z below {lowest:.2}, the lowest of the calibration's packings", 100.0 * share)]
+    LowerZ {
+        /// Probability of a lower z.
+        share: f64,
+        /// Lowest z of the calibration.
+        lowest: f64,
     },
     /// A quantity of the state is outside the packings of the calibration.
     #[error("{quantity} = {}, the range of the calibration's packings", of_state(quantity, *value, *range))]
@@ -364,6 +372,7 @@ impl Warning {
                 | Warning::ContactsStated { .. }
                 | Warning::HardlyDetermined { .. }
                 | Warning::HigherZ { .. }
+                | Warning::LowerZ { .. }
                 | Warning::IsotropicContacts
                 | Warning::ErrorsLarge { .. }
                 | Warning::TakenAsUnknown { .. }
@@ -426,12 +435,17 @@ mod tests {
     #[test]
     fn a_value_just_outside_a_range_is_printed_outside_of_it() {
         let text = |value| {
-            Warning::StateOutsideFit { quantity: "q/p", value, range: [0.61834, 0.64663] }.to_string()
+            Warning::StateOutsideFit { quantity: "the axial stress ratio", value, range: [0.61834, 0.64663] }
+                .to_string()
         };
-        assert!(text(0.65).starts_with("q/p = 0.6500 is outside 0.6183 to 0.6466,"));
-        assert!(text(0.64667).starts_with("q/p = 0.6467 is outside 0.6183 to 0.6466,"));
-        assert!(text(0.646634).starts_with("q/p = 0.646634 is outside 0.618340 to 0.646630,"));
-        assert!(text(0.618339).starts_with("q/p = 0.618339 is outside 0.618340 to 0.646630,"));
+        assert!(text(0.65).starts_with("the axial stress ratio = 0.6500 is outside 0.6183 to 0.6466,"));
+        assert!(text(0.64667).starts_with("the axial stress ratio = 0.6467 is outside 0.6183 to 0.6466,"));
+        assert!(
+            text(0.646634).starts_with("the axial stress ratio = 0.646634 is outside 0.618340 to 0.646630,")
+        );
+        assert!(
+            text(0.618339).starts_with("the axial stress ratio = 0.618339 is outside 0.618340 to 0.646630,")
+        );
         let text = Warning::OutsideFit { quantity: InferredQuantity::Z, value: 4.000_01, range: [3.0, 4.0] };
         assert!(text.to_string().starts_with("z = 4.00001 is above 4.00000,"), "{text}");
     }

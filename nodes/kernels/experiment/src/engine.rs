@@ -58,7 +58,7 @@ pub struct Observables {
 ///   without is not used again. Other errors leave it as it was.
 /// - [`packing`](Self::packing) is the complete state: an engine that starts from it continues the run.
 ///
-/// `grainlab_verification::conformance` has a test of each point.
+/// `grainlab_verify::conformance` has a test of each point.
 pub trait ParticleEngine: Debug + Send + Sync {
     /// The settings in force.
     fn settings(&self) -> &EngineSettings;

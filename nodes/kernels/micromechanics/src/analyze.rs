@@ -1,24 +1,20 @@
 //! All measurements on one packing.
 
 use crate::equilibrium::unbalanced_force_ratio;
-use crate::error::MicroError;
+use crate::error::{MicroError, ProbeError};
 use crate::network::{SpringNetwork, Springs, bulk_reuss_bound, relaxed_stiffness};
 use crate::probe::{StrainProbe, StrainProbeResult, strain_probe};
 use crate::sampling_tolerance::sampling_tolerance;
 use crate::structure::{contact_statistics, fabric, strain_ratio, stress_decomposition, total_strain_ratio};
+use crate::tolerances::TOLERANCES;
 use crate::view::PackingView;
 use grainlab_core::results::{
-    ElasticStiffness, Elasticity, NotJammed, PackingReport, StiffnessBounds, StiffnessMethod, StrainRatios,
+    ElasticStiffness, Elasticity, NoStiffness, PackingReport, StiffnessBounds, StiffnessMethod, StrainRatios,
 };
 use grainlab_core::{Packing, Stiffness, Vec3, min_contacts, symmetry};
-use std::ops::RangeInclusive;
 
 /// Grains from which the default tolerance is larger.
 const LARGE: usize = 50_000;
-
-/// Tolerances of a measurement. Above, a solve may end before it has found the softest motions of a network near isostaticity, and
-/// then states too small an error.
-pub const TOLERANCES: RangeInclusive<f64> = 1e-13..=1e-5;
 
 /// Settings of the measurement of a packing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,19 +54,38 @@ pub struct Analysis {
     pub report: PackingReport,
     /// The result of the probe, if one was set.
     pub probe: Option<StrainProbeResult>,
+    /// Why the stiffness could not be computed, where the reason in the report is [`NoStiffness::Unsolved`].
+    pub unsolved: Option<MicroError>,
+}
+
+impl Analysis {
+    /// Returns why there is no stiffness; `None` with one, and where grains overlap too deeply, which the
+    /// [warnings](grainlab_core::results::warnings()) of the packing say with the likely cause.
+    pub fn why_no_stiffness(&self) -> Option<String> {
+        match (self.report.elasticity.as_ref().err()?, &self.unsolved) {
+            (NoStiffness::TooDeep, _) => None,
+            (NoStiffness::Unsolved, Some(reason)) => Some(format!("the moduli are unknown: {reason}")),
+            (why, _) => Some(why.to_string()),
+        }
+    }
 }
 
 /// Measures structure, stress and stiffness of `packing`.
 ///
-/// A packing that is not jammed is measured as far as possible; [`PackingReport::elasticity`] has the reason.
+/// A packing without a stiffness is measured as far as possible; [`PackingReport::elasticity`] has the reason, and
+/// [`Analysis::unsolved`] the details where a stiffness was not found or failed its checks. No stiffness is sought where grains
+/// overlap beyond every contact law.
 ///
 /// # Errors
-/// A setting out of range, a contact whose normal is not parallel to its branch vector, and a stiffness that
-/// fails its checks.
+/// A setting out of range, and a contact whose normal is not parallel to its branch vector.
 pub fn analyze(packing: &Packing, settings: &Settings) -> Result<Analysis, MicroError> {
     let axis = settings.check()?;
     let view = PackingView::new(packing)?;
-    let (elasticity, probe) = elasticity(&view, settings)?;
+    let (elasticity, probe, unsolved) = match elasticity(&view, settings) {
+        Ok((elasticity, probe)) => (elasticity, probe, None),
+        Err(error) if error.is_of_solve() => (Err(NoStiffness::Unsolved), None, Some(error)),
+        Err(error) => return Err(error),
+    };
     let fabric = fabric(&view, &axis);
     let contacts = contact_statistics(&view);
     let strain_ratios = StrainRatios {
@@ -99,7 +114,7 @@ pub fn analyze(packing: &Packing, settings: &Settings) -> Result<Analysis, Micro
         fabric,
         elasticity,
     };
-    Ok(Analysis { report, probe })
+    Ok(Analysis { report, probe, unsolved })
 }
 
 /// The stiffness by the method of the settings, and the result of the probe.
@@ -109,17 +124,20 @@ fn elasticity(
 ) -> Result<(Elasticity, Option<StrainProbeResult>), MicroError> {
     let packing = view.packing;
     let grains = packing.grains();
-    let not_jammed = |why| Ok((Err(why), None));
+    let without = |why| Ok((Err(why), None));
     if packing.contacts.is_empty() {
-        return not_jammed(NotJammed::NoContacts { grains });
+        return without(NoStiffness::NoContacts { grains });
     }
     if view.carrying() == 0 {
-        return not_jammed(NotJammed::OnlyRattlers { grains, needed: min_contacts(packing.friction) });
+        return without(NoStiffness::OnlyRattlers { grains, needed: min_contacts(packing.friction) });
+    }
+    if packing.overlaps().is_some_and(|overlaps| overlaps.are_too_deep()) {
+        return without(NoStiffness::TooDeep);
     }
     let network = SpringNetwork::new(view, settings.springs)?;
     let found = relaxed_stiffness(&network, settings.tolerance_for(grains)?, settings.max_iterations)?;
     let Some(found) = found else {
-        return not_jammed(NotJammed::Floppy { contacts: network.contacts() });
+        return without(NoStiffness::Floppy { contacts: network.contacts() });
     };
     // The energy of springs that carry forces changes with the strain by more than the stress does.
     let cauchy =
@@ -131,7 +149,11 @@ fn elasticity(
         bulk_reuss: bulk_reuss_bound(view, settings.springs)
             .filter(|_| !network.prestressed() && settings.probe.is_none()),
     };
-    let probe = settings.probe.as_ref().map(|probe| strain_probe(packing, probe)).transpose()?;
+    let probe = match settings.probe.as_ref().map(|probe| strain_probe(packing, probe)).transpose() {
+        // Another friction may leave rattlers alone.
+        Err(ProbeError::NoStiffness(why)) => return without(why),
+        probe => probe?,
+    };
     let stiffness = match &probe {
         Some(probe) => ElasticStiffness {
             method: StiffnessMethod::StrainProbe,

@@ -1,6 +1,6 @@
 //! Errors of the measurements.
 
-use grainlab_core::results::NotJammed;
+use grainlab_core::results::NoStiffness;
 
 /// Why a packing could not be analysed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -52,8 +52,8 @@ pub enum MicroError {
     /// The linear solve did not reach its tolerance.
     #[error(
         "stiffness solve reached a relative residual of {residual:e} after {iterations} iterations, {tolerance:e} was \
-         asked for (a network near isostaticity converges slowly, one with chains of grains on two contacts perhaps not at all); raise \
-         the tolerance, to 1e-5 at most"
+         asked for (a network near isostaticity converges slowly, one with chains of grains on two contacts perhaps not at all){}",
+        sufficient.map_or_else(String::new, |value| format!("; a tolerance of {value:e} is met"))
     )]
     NotConverged {
         /// The worst relative residual of the columns.
@@ -62,6 +62,8 @@ pub enum MicroError {
         tolerance: f64,
         /// Number of iterations done.
         iterations: u32,
+        /// A larger tolerance with which the stiffness was found, if there is one.
+        sufficient: Option<f64>,
     },
     /// Prestress gives the network a direction of negative stiffness.
     #[error(
@@ -76,13 +78,19 @@ pub enum MicroError {
     /// Two evaluations of the same stiffness, by energy and by stress, differ.
     #[error(
         "stiffness by energy and by stress differ by {relative:e} of the largest entry of the affine stiffness (at most \
-         {limit:e}); lower the tolerance of the solve"
+         {limit:e}){}",
+        sufficient.map_or_else(
+            || ": the network is too soft for double precision".to_owned(),
+            |value| format!("; with a tolerance of {value:e} they agree")
+        )
     )]
     Inconsistent {
         /// Largest difference over the largest entry of the affine stiffness.
         relative: f64,
         /// The largest value allowed.
         limit: f64,
+        /// A smaller tolerance with which the stiffness was found, if there is one.
+        sufficient: Option<f64>,
     },
     /// The stiffness is not between zero and the affine stiffness.
     #[error(
@@ -110,6 +118,25 @@ pub enum MicroError {
     Probe(#[from] ProbeError),
 }
 
+impl MicroError {
+    /// Returns true if the packing was read and only its stiffness could not be computed, or was withheld.
+    pub fn is_of_solve(&self) -> bool {
+        match self {
+            Self::NotConverged { .. }
+            | Self::Unstable { .. }
+            | Self::Inconsistent { .. }
+            | Self::OutOfBounds { .. }
+            | Self::HeldOnly { .. } => true,
+            Self::Probe(error) => !matches!(error, ProbeError::Setting { .. }),
+            Self::Packing(_)
+            | Self::OtherPacking { .. }
+            | Self::Loads { .. }
+            | Self::Setting { .. }
+            | Self::Normal { .. } => false,
+        }
+    }
+}
+
 /// Why a packing could not be probed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ProbeError {
@@ -125,7 +152,7 @@ pub enum ProbeError {
     },
     /// The packing has no contact network.
     #[error(transparent)]
-    NotJammed(#[from] NotJammed),
+    NoStiffness(#[from] NoStiffness),
     /// The packing did not come to rest before the strain.
     #[error(
         "the packing is not at rest: an unbalanced force ratio of {unbalanced:e} after {steps} steps, {target:e} is needed \
@@ -174,9 +201,14 @@ mod tests {
     #[test]
     fn advice_is_about_what_a_command_has() {
         let rest = ProbeError::NoRest { unbalanced: 1e-3, target: 1e-6, steps: 9 };
-        let solve = MicroError::NotConverged { residual: 1e-3, tolerance: 1e-9, iterations: 9 };
-        for text in [rest.to_string(), solve.to_string()] {
+        let solve = |sufficient| {
+            let (residual, tolerance, iterations) = (1e-7, 1e-9, 9);
+            MicroError::NotConverged { residual, tolerance, iterations, sufficient }.to_string()
+        };
+        for text in [rest.to_string(), solve(None), solve(Some(2e-7))] {
             assert!(!text.contains("max_"), "{text}");
         }
+        assert!(solve(Some(2e-7)).ends_with("; a tolerance of 2e-7 is met"));
+        assert!(solve(None).ends_with("not at all)"), "no tolerance is advised that was not tried");
     }
 }

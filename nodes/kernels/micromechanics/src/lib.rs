@@ -17,10 +17,12 @@ pub mod network;
 pub mod probe;
 mod sampling_tolerance;
 pub mod structure;
+mod tolerances;
 mod view;
 
-pub use analyze::{Analysis, Settings, TOLERANCES, analyze};
+pub use analyze::{Analysis, Settings, analyze};
 pub use equilibrium::unbalanced_force_ratio;
 pub use error::{MicroError, ProbeError};
 pub use sampling_tolerance::sampling_tolerance;
+pub use tolerances::TOLERANCES;
 pub use view::PackingView;

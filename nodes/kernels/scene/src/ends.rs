@@ -12,8 +12,15 @@ const CLOSEST_EQUAL: f64 = 0.64;
 /// Solid fraction of the closest packing of spheres of two sizes, where the small ones fill the voids of the large ones: 1 − (1 − 0.64)².
 const CLOSEST: f64 = 0.87;
 
-/// Why the phase cannot end, or cannot publish the packings that it records: the key at fault, and the message.
-pub(crate) fn faults(phase: &Phase, sizes: &Sizes) -> Vec<(&'static str, String)> {
+/// Volume of the spheres over volume of the cell that no packing has: a close-packed crystal at the largest overlap of a run has 1.02.
+const OVERFULL: f64 = 1.1;
+
+/// Solid fraction below which no packing of spheres carries a stress.
+const LOOSEST: f64 = 0.3;
+
+/// Why the phase cannot end, or cannot publish the packings that it records: the key at fault, and the message. `solid_fraction`
+/// is a lower bound of the one at its begin.
+pub(crate) fn faults(phase: &Phase, sizes: &Sizes, solid_fraction: f64) -> Vec<(&'static str, String)> {
     let mut found = Vec::new();
     let all = &phase.until.all;
     for (n, condition) in all.iter().enumerate() {
@@ -22,6 +29,7 @@ pub(crate) fn faults(phase: &Phase, sizes: &Sizes) -> Vec<(&'static str, String)
         found.extend(other.map(|message| ("until", message)));
     }
     found.extend(too_late(phase).map(|message| ("until", message)));
+    found.extend(overfull(phase, solid_fraction).map(|message| ("until", message)));
     let strains = phase.controls().iter().any(|c| match c {
         ComponentControl::StrainRate(rate) => *rate != 0.0,
         ComponentControl::Stress(_) => true,
@@ -68,6 +76,9 @@ fn never(condition: &Condition, phase: &Phase) -> Option<String> {
                 )
             })
         }
+        Measure::Stress(0..=2) if upwards < 0.0 && bound < 0.0 => {
+            Some(format!("{name} at or below {bound:e} Pa is tension: grains without cohesion only press"))
+        }
         Measure::Stress(_) | Measure::Pressure | Measure::Deviator => {
             let target = target(measure, phase)?;
             ((bound - target) * upwards > 0.0).then(|| {
@@ -101,6 +112,48 @@ fn too_late(phase: &Phase) -> Option<String> {
         format!(
             "{} takes {time:.4} s of simulated time{held}, and the phase fails at its timeout of {timeout} s; raise the timeout",
             name(*measure)
+        )
+    })
+}
+
+/// Returns a lower bound of the solid fraction at the end of a phase from one at its begin.
+pub(crate) fn solid_fraction_after(phase: &Phase, before: f64) -> f64 {
+    let Conditions { all, timeout, .. } = &phase.until;
+    let deformed = match phase.imposed_volumetric_rate() {
+        Some(rate) => {
+            let needed = all.iter().filter_map(|c| least_time(c, phase)).fold(0.0, f64::max);
+            before * (-rate * if rate < 0.0 { needed } else { *timeout }).exp()
+        }
+        // A stress keeps grains together.
+        None => before.min(LOOSEST),
+    };
+    let bound = |c: &Condition| match *c {
+        Condition::AtLeast(Measure::SolidFraction, bound) => Some(bound),
+        _ => None,
+    };
+    all.iter().filter_map(bound).fold(deformed, f64::max)
+}
+
+/// An imposed compression beyond a full cell.
+fn overfull(phase: &Phase, before: f64) -> Option<String> {
+    let rate = phase.imposed_volumetric_rate().filter(|rate| *rate < 0.0 && before > 0.0)?;
+    let times = phase.until.all.iter().filter_map(|c| Some((c, least_time(c, phase)?)));
+    let (condition, time) = times.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let filled = before * (-rate * time).exp();
+    let (Condition::AtLeast(measure, bound) | Condition::AtMost(measure, bound)) = *condition else {
+        return None;
+    };
+    let full = before.recip().ln() / -rate;
+    let limit = match measure {
+        Measure::Strain(component) => phase.imposed_rate(component)? * full,
+        Measure::Elapsed => full,
+        _ => return None,
+    };
+    (filled > OVERFULL).then(|| {
+        format!(
+            "{} = {bound} is reached where the grains fill the cell {filled:.2} times (their solid fraction is {before:.3} or more as the \
+             phase begins, and its rates compress them); the cell is full at {limit:.3}",
+            name(measure)
         )
     })
 }

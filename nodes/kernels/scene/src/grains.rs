@@ -13,8 +13,23 @@ const LARGEST_RATIO: f64 = 20.0;
 /// Reads `[grains]`: number and sizes.
 pub(crate) fn read(r: &mut Reader<'_>) -> (u32, Sizes) {
     let listed = r.get(&keys::DIAMETER).and_then(counts);
-    let count = r.whole(&keys::GRAIN_COUNT, listed);
-    if let Some(sum) = listed.filter(|sum| *sum != count) {
+    let unwhole = r.get(&keys::DIAMETER).and_then(unwhole).map(|count| {
+        format!(
+            "has the count {count}; a count is a whole number, written without a decimal point or exponent"
+        )
+    });
+    let too_many = listed.filter(|sum| *sum > keys::MOST_GRAINS);
+    let too_many = too_many
+        .map(|sum| format!("has counts that sum to {sum} grains; a run has at most {}", keys::MOST_GRAINS));
+    let count = match unwhole.or(too_many) {
+        Some(message) => {
+            r.get(&keys::GRAIN_COUNT);
+            r.fault("diameter", message);
+            1
+        }
+        None => r.whole(&keys::GRAIN_COUNT, listed),
+    };
+    if let Some(sum) = listed.filter(|sum| r.is_sound() && *sum != count) {
         r.fault("count", format!("is {count}, but the counts in diameter sum to {sum}"));
     }
     let sizes = sizes(r);
@@ -36,6 +51,12 @@ fn counts(value: &Value) -> Option<u64> {
         .collect::<Option<Vec<_>>>()
         .filter(|c| !c.is_empty())
         .map(|c| c.iter().fold(0u64, |a, b| a.saturating_add(*b)))
+}
+
+/// The first count in a list of diameters that is no whole number.
+fn unwhole(value: &Value) -> Option<String> {
+    let counts = value.as_array()?.iter().filter_map(|entry| entry.as_table()?.get("count"));
+    counts.filter(|count| count.as_integer().is_none()).map(Value::to_string).next()
 }
 
 fn sizes(r: &mut Reader<'_>) -> Sizes {

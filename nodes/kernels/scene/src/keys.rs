@@ -29,6 +29,9 @@ pub(crate) const KINDS: [(&str, &str); 5] = [
     ("relax", "`kind = \"relax\"`: a fixed cell; it has no other keys"),
 ];
 
+/// Largest number of grains of a run. A million take 6.5 GB of memory through the whole laboratory.
+pub const MOST_GRAINS: u64 = 10_000_000;
+
 const GAS: &[&str] = &["gas"];
 const STRAIN: &[&str] = &["strain"];
 const SERVO: &[&str] = &["servo"];
@@ -53,11 +56,11 @@ keys! {
     START_PACKING = text("start.packing", Required, "file with the packing, by its path from this file: a recording, CSV, LAMMPS or YADE; excludes [grains] and a gas");
     START_CONTACT_FORCES = text("start.contact_forces", Words("those in the file of the packing"), "LAMMPS `dump local` with the contact forces of the packing, a dump with one step, by its path from this file");
     START_CONTACT_COLUMNS = form("start.contact_columns", "an array of five or eight names, as [\"patom1\", \"patom2\", \"fx\", \"fy\", \"fz\", \"p1\", \"p2\", \"p3\"]", Words("found by their names"), "columns of contact_forces: ids, normal force, tangential force; or ids and the whole force");
-    START_COPIES = whole("start.copies", 1, 100, DefaultValue::Whole(1), "copies of the packing along each edge of its cell: the run has the cube of it times the grains");
+    START_COPIES = whole("start.copies", 1, 100, DefaultValue::Whole(1), "copies of the packing along each edge of its cell: the run has the cube of it times the grains, at most 10000000");
     START_STEP = whole("start.step", 0, u64::MAX >> 1, Words("the last one"), "solver step of the packing in a recording or a dump");
 
     GRAINS = form("grains", "a table with count and diameter", Words("required, but with start"), "[grains]: number and sizes");
-    GRAIN_COUNT = whole("grains.count", 1, 10_000_000, Words("required, but with counts in diameter"), "number of grains");
+    GRAIN_COUNT = whole("grains.count", 1, MOST_GRAINS, Words("required, but with counts in diameter"), "number of grains");
     DIAMETER = Key { unit: "m", ..form("grains.diameter", "a length above 0, { min, max }, { median, spread } or [{ diameter, share }, ...] or [{ diameter, count }, ...]", Required, "of every grain, or a law: uniform, lognormal (spread: standard deviation of the logarithm, cut at 3), or several sizes") };
 
     SHEAR_MODULUS = number("material.shear_modulus", "Pa", Interval::POSITIVE, DefaultValue::Number(GLASS.shear_modulus), "shear modulus of the grains");
@@ -100,7 +103,7 @@ keys! {
     GAIN_SHARE = Key { kinds: SERVO, ..number("phase.gain_share", "", Interval { low: Excluded(0.0), high: Excluded(1.0) }, DefaultValue::Number(0.3), "gain over its critical value; law normalised") };
     RESPONSE_TIME = Key { kinds: SERVO, ..number("phase.response_time", "s", Interval::POSITIVE, Required, "time in which an error is corrected; law scaled") };
     GAIN = Key { kinds: SERVO, ..number("phase.gain", "1/(Pa s)", Interval::POSITIVE, Required, "gain of the law integral") };
-    LEAK = Key { kinds: SERVO, ..number("phase.leak", "", Interval::from_to(0.0, 1.0), DefaultValue::Number(0.0), "fraction by which the strain rate decays at each exchange; laws normalised and integral") };
+    LEAK = Key { kinds: SERVO, ..number("phase.leak", "", Interval::from_to(0.0, 1.0), Words("0.01; 0 for the law integral"), "fraction by which the strain rate decays at each exchange, so that the stress does not swing about its target; laws normalised and integral") };
 
     TIMES = Key { kinds: CYCLE, ..whole("phase.times", 1, 10_000, Required, "rounds of the cycle") };
     CYCLE_PHASES = Key { kinds: CYCLE, ..form("phase.phase", "an array of tables, one per phase", Required, "phases of the cycle: [[phase.phase]]") };

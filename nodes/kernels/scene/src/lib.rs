@@ -43,7 +43,7 @@ pub use built_in::{BUILT_IN, built_in};
 pub use compose::{Draft, Library, Source};
 pub use fault::{Fault, SceneError};
 pub use key::{DefaultValue, Domain, Interval, Key};
-pub use keys::KEYS;
+pub use keys::{KEYS, MOST_GRAINS};
 pub use model::{
     Condition, Conditions, GasMethod, Measure, Numerics, Phase, PhaseKind, Record, Scene, Start,
 };

@@ -21,6 +21,8 @@ impl Scene {
                 "material.density is {density} kg/m3, lighter than grains are: check its unit"
             ));
         }
+        let shear_modulus = self.material.shear_modulus_doubt();
+        notes.extend(shear_modulus.map(|doubt| format!("material.shear_modulus is {doubt}")));
         notes
     }
 

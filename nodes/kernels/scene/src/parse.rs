@@ -80,6 +80,7 @@ fn read_scene(r: &mut Reader<'_>, packing: Option<&Packing>) -> Scene {
         friction,
         taken: false,
         spin_drag: phases::spin_drag(&material, sizes.mean()),
+        solid_fraction: packing.map_or(0.0, Packing::solid_fraction),
     };
     let phases = phases::read(r, &mut inherited, start.is_none());
     if let (Some(packing), Some(first)) = (packing, phases.first()) {

@@ -1,7 +1,7 @@
 //! The loading path as a state machine.
 
-use crate::model::{Condition, Measure, Phase, Scene};
-use grainlab_core::{ComponentControl, SymTensor};
+use crate::model::{Condition, Measure, Phase, PhaseKind, Scene};
+use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 
 /// The state of the packing that the path evaluates at each exchange.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,9 +78,16 @@ impl PathState {
         }
         if elapsed > phase.until.timeout {
             let (number, timeout) = (self.phase + 1, phase.until.timeout);
+            let remedy = "raise its timeout, loosen the condition, take more grains, or change the loading";
+            let remedy = match undamped(phase, seen) {
+                Some(leak) => format!(
+                    "if the stress swings about its target, raise the leak of the phase, {leak} now, lower its rate_limit, or take \
+                     law = \"scaled\"; else {remedy}"
+                ),
+                None => remedy.to_owned(),
+            };
             return Err(PathError(format!(
-                "phase {number} ({}) did not meet its end conditions within {timeout} s of simulated time: {}; raise its \
-                 timeout, loosen the condition, take more grains, or change the loading",
+                "phase {number} ({}) did not meet its end conditions within {timeout} s of simulated time: {}; {remedy}",
                 phase.name,
                 self.unmet(scene, seen)
             )));
@@ -119,8 +126,18 @@ fn measured(measure: Measure, seen: &Observation, elapsed: f64) -> f64 {
     }
 }
 
-/// Largest error of a servoed stress component over the mean stress target.
-fn target_error(phase: &Phase, seen: &Observation) -> f64 {
+/// A servoed stress component and its target.
+struct TargetError {
+    /// Index of the component.
+    component: usize,
+    /// Stress target, Pa.
+    target: f64,
+    /// |σ − σ*| over the mean stress target.
+    relative: f64,
+}
+
+/// Returns the servoed stress component that is farthest off its target; `None` where no stress is servoed.
+fn target_error(phase: &Phase, seen: &Observation) -> Option<TargetError> {
     let controls = phase.controls();
     let target = |i: usize| match controls[i] {
         ComponentControl::Stress(s) => Some(s),
@@ -129,14 +146,33 @@ fn target_error(phase: &Phase, seen: &Observation) -> f64 {
     let normal: Vec<f64> = (0..3).filter_map(target).collect();
     let mean = normal.iter().sum::<f64>() / normal.len().max(1) as f64;
     let stress = seen.stress.voigt();
-    (0..6).filter_map(|i| target(i).map(|t| (stress[i] - t).abs() / mean)).fold(0.0, f64::max)
+    let errors = (0..6).filter_map(|component| {
+        let target = target(component)?;
+        Some(TargetError { component, target, relative: (stress[component] - target).abs() / mean })
+    });
+    errors.max_by(|a, b| a.relative.total_cmp(&b.relative))
+}
+
+/// Returns the leak of the law that let a stress miss its target in this phase; `None` where no stress does, and under a law that
+/// does not swing.
+fn undamped(phase: &Phase, seen: &Observation) -> Option<f64> {
+    let PhaseKind::Servo { law: ServoLaw::Normalised { leak, .. } | ServoLaw::Integral { leak, .. }, .. } =
+        phase.kind
+    else {
+        return None;
+    };
+    let off = |c: &Condition| matches!(c, Condition::OnTarget { .. }) && !holds(c, phase, seen, 0.0);
+    phase.until.all.iter().any(off).then_some(leak)
 }
 
 fn holds(condition: &Condition, phase: &Phase, seen: &Observation, elapsed: f64) -> bool {
     match *condition {
         Condition::AtLeast(m, value) => measured(m, seen, elapsed) >= value,
         Condition::AtMost(m, value) => measured(m, seen, elapsed) <= value,
-        Condition::OnTarget { fraction } => target_error(phase, seen) <= fraction,
+        // Without a servoed stress every one is on target.
+        Condition::OnTarget { fraction } => {
+            target_error(phase, seen).is_none_or(|error| error.relative <= fraction)
+        }
     }
 }
 
@@ -167,8 +203,15 @@ fn describe(condition: &Condition, phase: &Phase, seen: &Observation, elapsed: f
             format!("{} is {}, {side} {v:e}", name(m), beside(measured(m, seen, elapsed), v))
         }
         Condition::OnTarget { fraction } => {
-            let error = beside(target_error(phase, seen), fraction);
-            format!("stress is off target by {error}, above {fraction:e}")
+            let Some(TargetError { component, target, relative }) = target_error(phase, seen) else {
+                return String::new();
+            };
+            let (name, stress) = (SymTensor::COMPONENTS[component], seen.stress.voigt()[component]);
+            let wanted = if target == 0.0 { "0".to_owned() } else { format!("{target:e}") };
+            let off = beside(relative, fraction);
+            format!(
+                "stress {name} is {stress:.4e} Pa for {wanted} Pa, off target by {off}, above {fraction:e}"
+            )
         }
     }
 }

@@ -34,6 +34,8 @@ pub(crate) struct Inherited<'a> {
     pub(crate) taken: bool,
     /// Drag on spins of relaxing and servoed phases, 1/s.
     pub(crate) spin_drag: f64,
+    /// Lower bound of the solid fraction as the next phase begins; 0 if it is not known.
+    pub(crate) solid_fraction: f64,
 }
 
 /// Default of the drag on spins of a relaxing or servoed phase, 1/s.
@@ -128,8 +130,12 @@ fn one(
 fn cycle(r: &mut Reader<'_>, place: &str, inherited: &mut Inherited<'_>, out: &mut Vec<Phase>) {
     r.text(&keys::PHASE_NAME, Some("cycle"));
     let times = r.whole(&keys::TIMES, None) as usize;
-    let mut body = Vec::new();
+    let (mut body, before) = (Vec::new(), inherited.solid_fraction);
     list(r, &keys::CYCLE_PHASES, &format!("{place}.phase"), inherited, &mut body);
+    // Each round begins where the last one ended.
+    if inherited.solid_fraction < before {
+        inherited.solid_fraction = 0.0;
+    }
     let unrolled = body.len().saturating_mul(times);
     if unrolled.saturating_add(out.len()) > MAX_PHASES {
         r.fault("times", format!("unrolls to {unrolled} phases; at most {MAX_PHASES}"));
@@ -179,9 +185,15 @@ fn phase(r: &mut Reader<'_>, word: &str, inherited: &mut Inherited<'_>) -> Phase
     if hard {
         refuse_contacts(r, &phase);
     }
+    let before = match phase.kind {
+        PhaseKind::Gas { initial_solid_fraction, .. } => initial_solid_fraction,
+        _ => inherited.solid_fraction,
+    };
     // A phase with other faults is not judged twice.
     if r.is_sound() {
-        ends::faults(&phase, inherited.sizes).into_iter().for_each(|(key, message)| r.fault(key, message));
+        let faults = ends::faults(&phase, inherited.sizes, before);
+        faults.into_iter().for_each(|(key, message)| r.fault(key, message));
+        inherited.solid_fraction = ends::solid_fraction_after(&phase, before);
     }
     phase
 }

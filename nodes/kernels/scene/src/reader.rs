@@ -46,10 +46,14 @@ impl<'a> Reader<'a> {
         let found = match value {
             None => "is missing".into(),
             Some(v @ (Value::Table(_) | Value::Array(_))) => format!("is {}", kind(v)),
-            Some(Value::Float(v)) => format!("is {v}"),
+            Some(Value::Float(v)) => format!("is {v:?}"),
             Some(v) => format!("is {v}"),
         };
-        self.fault(key.name(), format!("{found}; it must be {}", key.requirement()));
+        let written = match (key.domain, value) {
+            (Domain::Whole(..), Some(Value::Float(_))) => ", written without a decimal point or exponent",
+            _ => "",
+        };
+        self.fault(key.name(), format!("{found}; it must be {}{written}", key.requirement()));
     }
 
     pub(crate) fn has(&self, key: &Key) -> bool {

@@ -2,15 +2,41 @@
 
 use crate::canonical::Entry;
 use crate::fault::Fault;
+use crate::key::Domain;
 use crate::keys;
 use crate::model::{Phase, Start};
 use crate::reader::Reader;
 use crate::sizes::Sizes;
 use grainlab_core::contact::ContactLaw;
-use grainlab_core::{Material, Packing};
+use grainlab_core::{Material, OTHER_LAW, Packing};
 
 /// Two numbers are equal if they differ by less than this fraction: a file may have six digits.
 const SAME: f64 = 1e-5;
+
+impl Start {
+    /// Returns the number of grains of the run, whose packing has `grains`.
+    ///
+    /// # Errors
+    /// If the copies are none, too many, or make more than [`keys::MOST_GRAINS`].
+    pub fn grains_of_copies(&self, grains: usize) -> Result<u64, Fault> {
+        let (copies, key) = (u64::from(self.copies), &keys::START_COPIES);
+        let fault = |message| Fault { place: key.path.to_owned(), message };
+        let Domain::Whole(least, most) = key.domain else { unreachable!("copies are a whole number") };
+        if !(least..=most).contains(&copies) {
+            return Err(fault(format!("is {copies}; it must be {}", key.requirement())));
+        }
+        let all = (grains as u64).saturating_mul(copies.pow(3));
+        if copies > 1 && all > keys::MOST_GRAINS {
+            let fit = (1..copies).rev().find(|n| grains as u64 * n.pow(3) <= keys::MOST_GRAINS).unwrap_or(1);
+            return Err(fault(format!(
+                "is {copies}, which asks for {all} grains, {copies} cubed times the {grains} of the packing; a run has at most {}, because \
+                 a million take 6.5 GB of memory: at most {fit} copies fit",
+                keys::MOST_GRAINS
+            )));
+        }
+        Ok(all)
+    }
+}
 
 /// Reads `[start]`; `None` if the scene has none.
 pub(crate) fn read(r: &mut Reader<'_>) -> Option<Start> {
@@ -79,14 +105,10 @@ pub(crate) fn other_law(own: &ContactLaw, packing: &Packing) -> Option<String> {
     })
 }
 
-/// Normal forces of a file and those of the law that differ by more than this fraction on average are of another law, of another
-/// material, or of a packing in motion.
-const OTHER_FORCES: f64 = 0.01;
-
 /// Why the forces of the packing cannot be those of its contact law, if they cannot. The engine has normal forces from overlaps.
 pub(crate) fn other_forces(packing: &Packing) -> Option<String> {
     let difference = packing.law_difference();
-    (difference > OTHER_FORCES).then(|| {
+    (difference > OTHER_LAW).then(|| {
         format!(
             "normal forces of the packing differ by {:.1} % on average from those of {} with this material, from which the run would \
              begin at another stress: give the law and the material that the forces are of, or bring the packing to rest first",

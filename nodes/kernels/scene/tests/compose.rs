@@ -34,7 +34,7 @@ fn the_samples_of_the_paper_are_what_they_were_as_whole_files() {
     for (name, mu2) in [("s1", "0.05"), ("s2", "0.1"), ("s3", "0.3"), ("s4", "0.15")] {
         // The lines that set the friction from the extension at constant lateral stress on, the name and the description.
         let mut lines: Vec<String> = FLAT_S2.lines().map(str::to_owned).collect();
-        for at in [68, 79, 90, 114, 138, 162] {
+        for at in [69, 81, 93, 119, 145, 171] {
             assert_eq!(lines[at - 1], "friction = 0.1");
             lines[at - 1] = format!("friction = {mu2}");
         }

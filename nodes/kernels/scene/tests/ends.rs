@@ -72,6 +72,69 @@ fn conditions_that_can_be_met_are_none_of_them() {
 }
 
 #[test]
+fn targets_that_pull_on_grains_without_cohesion_are_refused_with_their_range() {
+    let servo = |control: &str| {
+        format!("kind = \"servo\"\ncontrol = {{ {control} }}\nuntil = {{ on_target = 1e-3 }}")
+    };
+    let faults =
+        |phase: &str| Scene::parse(&scene(GAS, phase)).map_or_else(|e| e.to_string(), |_| String::new());
+    let held = "xx = { stress = 4e4 }, yy = { stress = 1e4 }";
+    for (control, fault) in [
+        ("zz = { stress = -1e3 }", "(second).control.zz: is { stress = -1000.0 }; it must be 0 or more"),
+        (
+            "xy = { stress = -3e4 }",
+            "control.xy: is { stress = -30000.0 }; it must be from -2.000000e4 to 2.000000e4",
+        ),
+        (
+            "zz = { stress = 0 }, xz = { stress = 1 }",
+            "control.xz: is { stress = 1.0 }; it must be from -0.000000e0 to",
+        ),
+    ] {
+        let found = faults(&servo(&format!("{held}, {control}")));
+        assert!(found.contains(fault) && found.contains("1 fault"), "{control}: {found}");
+    }
+    for control in
+        ["xy = { stress = 2e4 }", "zz = { stress = 0 }, xz = { stress = 0 }", "xz = { stress = 9e4 }"]
+    {
+        assert_eq!(faults(&servo(&format!("{held}, {control}"))), "", "{control}");
+    }
+    let below = faults(&format!("{STRAIN}until = {{ stress_below = {{ zz = -1.0 }} }}"));
+    assert!(below.contains("stress zz at or below -1e0 Pa is tension"), "{below}");
+}
+
+/// Strains are logarithmic, so that no strain makes an edge of the cell negative; but grains fill it before.
+#[test]
+fn a_compression_beyond_a_full_cell_is_refused_with_the_strain_at_which_it_is_full() {
+    let faults = |gas: &str, phase: &str| {
+        Scene::parse(&scene(gas, phase)).map_or_else(|e| e.to_string(), |_| String::new())
+    };
+    let strain = |rate: &str, until: &str| {
+        format!("kind = \"strain\"\nrate = [{rate}, 0, 0, 0]\nuntil = {{ {until} }}")
+    };
+    let full = faults(GAS, &strain("0, 0, -5", "strain = { zz = -1.2 }"));
+    assert!(
+        full.contains(
+            "(second).until: strain zz = -1.2 is reached where the grains fill the cell 1.99 times"
+        ),
+        "{full}"
+    );
+    assert!(full.contains("solid fraction is 0.600 or more") && full.contains("full at -0.511"), "{full}");
+    let timed = faults(GAS, &strain("-2, -2, -2", "elapsed = 0.2"));
+    assert!(timed.contains("elapsed = 0.2 is reached where") && timed.contains("full at 0.085"), "{timed}");
+    let gas = faults("strain = { xx = -1 }", &strain("0, 0, -5", "strain = { zz = -0.1 }"));
+    assert!(gas.contains("strain xx = -1 is reached where") && gas.contains("full at -0.401"), "{gas}");
+    // Room for it: a change of shape, a loose cell, and a phase after one that may have loosened the packing.
+    for phase in [strain("2, 2, -4", "strain = { zz = -1.5 }"), strain("0, 0, -5", "strain = { zz = -0.5 }")]
+    {
+        assert_eq!(faults(GAS, &phase), "");
+    }
+    assert_eq!(faults("solid_fraction = 0.31", &strain("0, 0, -5", "strain = { zz = -1.2 }")), "");
+    let first = strain("0, 0, 5", "strain = { zz = 0.1 }");
+    let second = format!("[[phase]]\nname = \"third\"\n{}", strain("0, 0, -5", "strain = { zz = -1.2 }"));
+    assert_eq!(faults(GAS, &format!("{first}\n{second}")), "");
+}
+
+#[test]
 fn components_that_stay_uncontrolled_are_noted() {
     let notes = |phase: &str| {
         Scene::parse(&scene(GAS, &format!("{phase}until = {{ on_target = 1e-3 }}")))
@@ -84,6 +147,23 @@ fn components_that_stay_uncontrolled_are_noted() {
         "kind = \"servo\"\ncontrol = { xx = { stress = 5e4 }, yy = { stress = 5e4 }, zz = { stress = 5e4 } }\n",
     );
     assert!(held.contains("phase second: the strain of yz, xz, xy is held"), "{held}");
+}
+
+#[test]
+fn an_implausible_shear_modulus_is_noted_and_no_built_in_scene_has_one() {
+    let with = |shear_modulus: &str| {
+        let text = scene(GAS, &format!("{ISOTROPIC}until = {{ on_target = 1e-3 }}"));
+        Scene::parse(&format!("{text}[material]\nshear_modulus = {shear_modulus}\n"))
+            .unwrap()
+            .notes()
+            .join("\n")
+    };
+    assert_eq!(with("29"), "material.shear_modulus is 29 Pa, softer than gels: is its unit Pa?");
+    assert_eq!(["2e3", "5e11"].map(with), ["", ""]);
+    for (name, text) in BUILT_IN {
+        let notes = Draft::of_text(text).unwrap().resolve().unwrap().scene.notes().join("\n");
+        assert!(!notes.contains("shear_modulus"), "{name}: {notes}");
+    }
 }
 
 #[test]

@@ -66,7 +66,7 @@ fn cycles_unroll_into_numbered_phases() {
 }
 
 #[test]
-fn a_servo_phase_is_normalised_by_default() {
+fn a_servo_phase_is_normalised_and_damped_by_default() {
     let law = |keys: &str| {
         let text = GOOD.replace("response_time = 2e-5", keys);
         match Scene::parse(&text)?.phases.swap_remove(3).kind {
@@ -74,7 +74,7 @@ fn a_servo_phase_is_normalised_by_default() {
             other => panic!("a servo phase: {other:?}"),
         }
     };
-    assert_eq!(law(""), Ok(ServoLaw::Normalised { share: 0.3, leak: 0.0 }));
+    assert_eq!(law(""), Ok(ServoLaw::Normalised { share: 0.3, leak: 0.01 }));
     let chosen = ServoLaw::Normalised { share: 0.1, leak: 0.05 };
     assert_eq!(law("law = 'normalised'\ngain_share = 0.1\nleak = 0.05"), Ok(chosen));
     assert_eq!(law("response_time = 2e-5"), Ok(ServoLaw::Scaled { response_time: 2e-5 }));
@@ -87,6 +87,24 @@ fn a_servo_phase_is_normalised_by_default() {
     ] {
         let error: grainlab_scene::SceneError = law(wrong).unwrap_err();
         assert!(error.faults.iter().any(|f| f.place.ends_with(place)), "{wrong}: {error}");
+    }
+}
+
+/// The text of the scene in a recording states every default that was in force.
+#[test]
+fn the_full_text_of_a_scene_states_its_leak_so_that_a_run_continues_under_the_one_it_began_with() {
+    let full = |keys: &str| {
+        let text = GOOD.replace("response_time = 2e-5", keys);
+        Draft::of_text(&text).unwrap().resolve().unwrap().toml
+    };
+    for (keys, line) in [
+        ("", "leak = 0.01\n"),
+        ("leak = 0.0", "leak = 0.0\n"),
+        ("law = 'integral'\ngain = 1e-3", "leak = 0.0\n"),
+    ] {
+        let text = full(keys);
+        assert!(text.contains(line), "{keys}: {text}");
+        assert_eq!(Draft::of_text(&text).unwrap().resolve().unwrap().toml, text);
     }
 }
 
@@ -195,6 +213,25 @@ fn the_last_phase_finishes_the_path_and_a_timeout_names_what_was_not_met() {
     let ended = PhaseEnded { reference: false, publish: true, finished: true };
     assert_eq!(state.observe(&scene, &on), Ok(Some(ended)));
     assert!(state.phase(&scene).is_none());
+}
+
+#[test]
+fn a_stress_that_misses_its_target_is_named_with_its_value_and_with_what_to_change() {
+    let stress = SymTensor::from_voigt([50e3, 50e3, 51e3, 0.0, 0.0, 0.0]);
+    let late = Observation { unbalanced: 1e-7, stress, ..seen(2.6) };
+    let failed = |keys: &str| {
+        let scene = Scene::parse(&GOOD.replace("response_time = 2e-5", keys)).unwrap();
+        let mut state = PathState { phase: 3, began: 2.0, holding_since: None };
+        state.observe(&scene, &late).unwrap_err().to_string()
+    };
+    let normalised = failed("leak = 0.005");
+    let named = "stress zz is 5.1000e4 Pa for 5e4 Pa, off target by 2.0000e-2, above 1e-3; ";
+    assert!(normalised.contains(named), "{normalised}");
+    let advice = "raise the leak of the phase, 0.005 now, lower its rate_limit, or take law = \"scaled\"";
+    assert!(normalised.contains(advice), "{normalised}");
+    // The scaled law has no leak and does not swing.
+    let scaled = failed("response_time = 2e-5");
+    assert!(scaled.contains(named) && !scaled.contains("leak"), "{scaled}");
 }
 
 #[test]
@@ -383,4 +420,52 @@ fn pair() -> Packing {
             vec![Vec3::zeros(), Vec3::x() * (3e-4 - overlap)],
         )
     }
+}
+
+#[test]
+fn copies_ask_for_at_most_the_grains_of_a_run() {
+    let start = |copies| grainlab_scene::Start {
+        packing: "p.csv".into(),
+        contact_forces: None,
+        contact_columns: Vec::new(),
+        step: None,
+        copies,
+    };
+    let asked = |copies, grains| start(copies).grains_of_copies(grains);
+    assert_eq!((asked(1, 20_000_000), asked(27, 500)), (Ok(20_000_000), Ok(9_841_500)));
+    for (copies, grains, words) in [
+        (
+            100,
+            500,
+            "is 100, which asks for 500000000 grains, 100 cubed times the 500 of the packing; a run has at most 10000000",
+        ),
+        (28, 500, "at most 27 copies fit"),
+        (2, 9_000_000, "at most 1 copies fit"),
+        (101, 1, "is 101; it must be a whole number from 1 to 100"),
+        (u32::MAX, 1, "it must be a whole number from 1 to 100"),
+    ] {
+        let fault = asked(copies, grains).unwrap_err();
+        assert!(fault.place == "start.copies" && fault.message.contains(words), "{fault}");
+    }
+}
+
+#[test]
+fn a_number_with_a_decimal_point_is_told_from_a_whole_number() {
+    let fault = |from: &str, to: &str| Scene::parse(&GOOD.replace(from, to)).unwrap_err().to_string();
+    let count = fault("count = 100", "count = 80.0");
+    let expected = "grains.count: is 80.0; it must be a whole number from 1 to 10000000, written without a decimal point or exponent";
+    assert!(count.contains(expected), "{count}");
+    assert!(fault("times = 2", "times = 1e1").contains("times: is 10.0; it must be a whole number"));
+    let list = |count: &str| {
+        fault("count = 100\ndiameter = 2e-4", &format!("diameter = [{{ diameter = 2e-4, count = {count} }}]"))
+    };
+    let of_list = list("30.0");
+    assert!(of_list.contains("grains.diameter: has the count 30.0; a count is a whole number"), "{of_list}");
+    assert!(of_list.contains("1 fault"), "{of_list}");
+    let many = list("20_000_000");
+    assert!(
+        many.contains("counts that sum to 20000000 grains; a run has at most 10000000")
+            && many.contains("1 fault"),
+        "{many}"
+    );
 }

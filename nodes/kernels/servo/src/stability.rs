@@ -9,8 +9,17 @@
 //! βω_k²))/V, with A the affine stiffness, Ξ_k the coupling of mode k to the strain, γ the drag and β the contact
 //! damping over stiffness: the elastic stress of the contacts, whose dashpots also act on the affine motion. Its
 //! imaginary part has the sign of Σ_k Ξ_k² ω (γ + βω²) and is positive at every frequency: stress leads strain, and the
-//! cell loses energy to the grains. In continuous time Eq. 1 is therefore stable for any gain, and a passive packing
-//! damps it without a leak. The limit is due to sampling: over one interval the pair (rate, error) is multiplied by
+//! cell loses energy to the grains. In continuous time Eq. 1 is therefore stable for any gain, and a packing whose modes
+//! couple to the strain damps it without a leak.
+//!
+//! A lattice has no such modes (Ξ_k = 0 by symmetry). A few large grains that bear the load, with rattlers between them, form
+//! one in a periodic cell. C is then A, which is real, and the stress swings for ever; the rate limit r bounds the swing to
+//! about r √(K h/g), 3 % of 100 kPa in a cell of three large grains and 600 rattlers. Stress with the part of the dashpots
+//! (η = βA) would damp it, but is unstable itself once the dashpots of heavy grains relax more slowly than the interval:
+//! gη > 2. The leak damps it whatever the packing is, by √(1 − λ) an interval. Its price is an error of λ ε̇/g while the rate
+//! is held up.
+//!
+//! The limit is due to sampling: over one interval the pair (rate, error) is multiplied by
 //!
 //! ```text
 //! | 1 − λ            g    |      characteristic polynomial   z² − (2 − λ − gKh) z + 1 − λ

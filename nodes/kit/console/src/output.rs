@@ -1,10 +1,11 @@
 //! Results to stdout: as a table, as JSON, as CSV.
 
+use crate::escape::escape_controls;
 use crate::failure::Failure;
 use clap::ValueEnum;
 use serde::Serialize;
 use std::fmt::Write as _;
-use std::io::{ErrorKind, Write as _};
+use std::io::{ErrorKind, IsTerminal, Write as _};
 
 /// The output format of a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -45,13 +46,12 @@ macro_rules! say {
     };
 }
 
-/// Prints a line on stderr, as [`say!`] does.
-pub fn say_line(mut line: String) {
-    line.push('\n');
-    crate::terminal::write_above_live_line(&line);
+/// Prints a line on stderr, as [`say!`] does. Escape sequences in the line are shown, not obeyed: it may quote a text from outside.
+pub fn say_line(line: String) {
+    crate::terminal::write_above_live_line(&(escape_controls(&line).into_owned() + "\n"));
 }
 
-/// Writes `text` to stdout. A closed pipe (`| head`) is not an error.
+/// Writes `text` to stdout. A closed pipe (`| head`) is not an error. A terminal gets it by [`escape_controls`], a file as it is.
 pub fn print(text: &str) -> Result<(), Failure> {
     print_more(text).map(|_| ())
 }
@@ -59,6 +59,7 @@ pub fn print(text: &str) -> Result<(), Failure> {
 /// Prints like [`print()`], for a command without an end; false once the reader of standard output has closed it.
 pub fn print_more(text: &str) -> Result<bool, Failure> {
     let mut out = std::io::stdout().lock();
+    let text = if out.is_terminal() { escape_controls(text) } else { text.into() };
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Ok(()) => Ok(true),
         Err(e) if e.kind() == ErrorKind::BrokenPipe => Ok(false),
@@ -85,6 +86,9 @@ pub fn json_element<T: Serialize + ?Sized>(value: &T) -> Result<String, Failure>
 pub struct Table {
     rows: Vec<Vec<String>>,
 }
+
+/// Width up to which the cells of a column are aligned: one very long name would otherwise fill every line with blanks.
+const WIDEST_ALIGNED: usize = 1000;
 
 impl Table {
     /// An empty table with these column names.
@@ -128,11 +132,12 @@ impl Table {
         self
     }
 
-    /// Aligned columns, two spaces apart.
+    /// Returns aligned columns, two spaces apart. A cell of more than 1,000 characters widens no column.
     pub fn text(&self) -> String {
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
         let width = |c: usize| {
-            self.rows.iter().filter_map(|r| r.get(c)).map(|s| s.chars().count()).max().unwrap_or(0)
+            let cells = self.rows.iter().filter_map(|r| r.get(c)).map(|s| s.chars().count());
+            cells.filter(|length| *length <= WIDEST_ALIGNED).max().unwrap_or(0)
         };
         let widths: Vec<usize> = (0..columns).map(width).collect();
         let mut text = String::new();
@@ -218,9 +223,54 @@ pub fn fixed(value: Option<f64>, digits: usize) -> String {
     value.filter(|v| v.is_finite()).map_or_else(|| "-".to_owned(), |v| format!("{v:.digits$}"))
 }
 
+/// Least number of significant digits of [`three_digits`].
+const SIGNIFICANT: usize = 3;
+
+/// Most decimal places of [`three_digits`]; smaller numbers have a power of ten.
+const MOST_DECIMALS: usize = 6;
+
+/// Formats a number with `decimals` places, or with more where these would show fewer than three significant digits, as 0.0112;
+/// numbers below 1e-4 have a power of ten, as 1.12e-5. `None` is `-`.
+pub fn three_digits(value: Option<f64>, decimals: usize) -> String {
+    let Some(value) = value.filter(|v| v.is_finite()) else { return "-".to_owned() };
+    match decimals_of(value, decimals) {
+        needed if needed > decimals.max(MOST_DECIMALS) => format!("{value:.*e}", SIGNIFICANT - 1),
+        needed => format!("{value:.needed$}"),
+    }
+}
+
+/// Returns the number of decimal places that show three significant digits of `value`, or `least` if it is larger.
+pub fn decimals_of(value: f64, least: usize) -> usize {
+    let before = value.abs().log10().floor();
+    // False for 0, whose logarithm is not finite.
+    let needed = if before.is_finite() { SIGNIFICANT as f64 - 1.0 - before } else { 0.0 };
+    least.max(needed.max(0.0) as usize)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn small_numbers_keep_three_digits_and_others_their_decimals() {
+        for (value, expected) in [
+            (112.4, "112.40"),
+            (1.5, "1.50"),
+            (0.0, "0.00"),
+            (0.998, "0.998"),
+            (0.011_24, "0.0112"),
+            (-0.011_24, "-0.0112"),
+            (1.124e-4, "0.000112"),
+            (1.124e-5, "1.12e-5"),
+        ] {
+            assert_eq!(three_digits(Some(value), 2), expected);
+        }
+        assert_eq!(
+            (three_digits(None, 2), three_digits(Some(f64::NAN), 2)),
+            ("-".to_owned(), "-".to_owned())
+        );
+        assert_eq!(three_digits(Some(112.4), 1), "112.4");
+    }
 
     #[test]
     fn cells_with_commas_and_quotes_survive_csv() {
@@ -236,6 +286,15 @@ mod tests {
         let of = |names: &[&str]| t.select(&names.iter().map(ToString::to_string).collect::<Vec<_>>());
         assert_eq!(of(&["c", "a"]).unwrap().csv(), "c,a\n3,1\n");
         assert_eq!(of(&["c", "d"]).unwrap_err(), "d");
+    }
+
+    #[test]
+    fn a_name_of_any_length_is_printed_and_does_not_widen_the_other_rows() {
+        let mut t = Table::new(["name", "n"]);
+        t.row(["x".repeat(70_000), "1".to_owned()]);
+        t.row(["a longer one".to_owned(), "2".to_owned()]);
+        let text = t.text();
+        assert!(text.starts_with("name          n\nxxx") && text.ends_with("x  1\na longer one  2\n"));
     }
 
     #[test]

@@ -28,7 +28,6 @@ fn is_ignored(signal: i32) -> bool {
     }
 }
 
-/// Message of a process that ignores a signal.
 const IGNORED: &[u8] =
     b"a signal that the launcher did not send is ignored: end the launcher, or send SIGKILL\n";
 

@@ -1,6 +1,6 @@
 //! Decides whose samples a process accepts, and counts the ignored ones by participant.
 
-use crate::identity::{Identity, RunId, Scope, member_of, run_of};
+use crate::identity::{Identity, RunId, Scope, may_be_ours, member_of, run_of};
 use grainlab_msgs::Guid;
 use std::collections::BTreeMap;
 
@@ -68,21 +68,29 @@ pub(crate) struct Admission {
 }
 
 impl Admission {
-    /// The rules for the participant `own` of a process with this identity.
     pub(crate) fn new(identity: Identity, own: Participant) -> Self {
         Self { identity, own, processes: BTreeMap::new(), strangers: BTreeMap::new() }
     }
 
-    /// The process's place in its run.
     pub(crate) fn identity(&self) -> &Identity {
         &self.identity
     }
 
-    /// Records a discovered participant and its process.
     pub(crate) fn discovered(&mut self, participant: Participant, process: Process) {
-        // As many as discovery itself keeps; further ones have no name.
-        if self.processes.len() < 16 * MAX_COUNTED || self.processes.contains_key(&participant) {
+        // As many as discovery itself keeps; further ones have no name. Those that admission depends on are always kept.
+        let decides = process.below_root || process.pid == 0;
+        let has_room = self.processes.len() < 16 * MAX_COUNTED;
+        if decides || has_room || self.processes.contains_key(&participant) {
             self.processes.insert(participant, process);
+        }
+    }
+
+    /// True if this participant must be known, however many others there are: one of the same run, or, without a run, one of this
+    /// program.
+    pub(crate) fn counts_on(&self, participant: &Participant) -> bool {
+        match self.identity.run {
+            Some(own) => run_of(participant) == Some(own) || self.admits(participant),
+            None => may_be_ours(participant),
         }
     }
 
@@ -206,6 +214,26 @@ mod tests {
         assert!(by_hand.admits(&HAND.guid_prefix()));
         let tool = Admission::new(Identity::default(), Identity::default().guid_prefix());
         assert!(tool.admits(&launched) && tool.admits(&HAND.guid_prefix()));
+    }
+
+    #[test]
+    fn a_process_of_the_run_must_be_known_and_so_must_a_program_that_the_launcher_started_among_any_number() {
+        let [own, other] = ["a", "b"].map(|name| Identity::member_of(RunId::named(name), 1));
+        let mut admission = Admission::new(own, own.guid_prefix());
+        assert!(admission.counts_on(&own.guid_prefix()));
+        let by_name = Identity { member: 0, ..own };
+        assert!(admission.counts_on(&by_name.guid_prefix()), "started by hand with the name of the run");
+        assert!(!admission.counts_on(&other.guid_prefix()) && !admission.counts_on(&HAND.guid_prefix()));
+        let instrument = |number: u16| {
+            let [high, low] = number.to_be_bytes();
+            [0x01, 0x10, 5, 5, 5, 5, 5, 5, 5, 5, high, low]
+        };
+        (0..2000).for_each(|n| admission.discovered(instrument(n), process(false)));
+        assert!(!admission.counts_on(&instrument(3000)));
+        admission.discovered(instrument(3000), process(true));
+        assert!(admission.counts_on(&instrument(3000)) && admission.admits(&instrument(3000)));
+        let by_hand = Admission::new(HAND, HAND.guid_prefix());
+        assert!(by_hand.counts_on(&HAND.guid_prefix()) && !by_hand.counts_on(&instrument(1)));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use crate::BULK_LIMIT;
 use crate::admission::{Participant, Stranger};
+use crate::announced::Announced;
 use crate::bus_error::BusError;
 use crate::demand::Demand;
 use crate::identity::Identity;
@@ -69,9 +70,6 @@ pub trait Bus {
     /// Ends a subscription: writers keep nothing for it any longer, and its handle is not valid any longer.
     fn unsubscribe(&mut self, subscription: SubscriptionId);
 
-    /// Takes an advertised topic back: readers no longer see this writer, and its handle is not valid any longer.
-    fn withdraw(&mut self, publisher: PublisherId);
-
     /// Publishes one serialized message, encapsulation header included, and returns its RTPS sequence number.
     ///
     /// Waits at most some milliseconds for a reliable reader that is far behind, then drops the sample and returns
@@ -107,6 +105,17 @@ pub trait Bus {
 
     /// True if anybody reads this publisher, also a stranger, as known at the last [`Bus::wait`].
     fn is_read(&self, publisher: PublisherId) -> bool;
+
+    /// Number of messages of this publisher that some reliable reader, of those that [`Bus::identity`] counts, has not
+    /// acknowledged yet.
+    fn unacknowledged(&self, _publisher: PublisherId) -> u64 {
+        0
+    }
+
+    /// True if every matched reliable reader has matched this publisher, too: each message from now on is due to it.
+    fn is_known_to_readers(&self, _publisher: PublisherId) -> bool {
+        true
+    }
 
     /// Writers matched with this subscription, of those that [`Bus::identity`] counts, as known at the last
     /// [`Bus::wait`].
@@ -145,6 +154,11 @@ pub trait Bus {
     /// The statistics of our subscriptions, in the order of [`Bus::subscribe`].
     fn received(&self) -> Vec<Received>;
 
+    /// What each writer of another process announced to this subscription until now, also writers that left.
+    fn announced(&self, _subscription: SubscriptionId) -> Vec<Announced> {
+        Vec::new()
+    }
+
     /// Counts a taken sample whose content was refused.
     fn count_refused(&mut self, subscription: SubscriptionId);
 
@@ -156,6 +170,11 @@ pub trait Bus {
 
     /// The owner of this writer, for messages to users.
     fn describe(&self, writer: Guid) -> Stranger;
+
+    /// A sentence about participants that are ignored because the domain is full; `None` if none is.
+    fn crowding(&self) -> Option<String> {
+        None
+    }
 
     /// A flag that is true once the process was asked to end, for computations that take long; `None` on a bus without
     /// signals.

@@ -9,27 +9,35 @@ pub struct Demand {
     pub reliable: bool,
     /// Maximum number of queued samples; a full queue drops the oldest. At least the largest backlog.
     pub depth: u32,
+    /// Maximum number of queued samples while they are small: `depth`, or more to take bursts.
+    pub burst: u32,
 }
 
 impl Demand {
     /// Every sample, and for a late reader the latched ones: at least the topic's depth of them, possibly more.
     pub const fn reliable(depth: u32) -> Self {
-        Self { reliable: true, depth }
+        Self { reliable: true, depth, burst: depth }
     }
 
     /// No repetition by the bus: for nodes that repeat by themselves and must not block a writer when they crash.
     pub const fn best_effort(depth: u32) -> Self {
-        Self { reliable: false, depth }
+        Self { reliable: false, depth, burst: depth }
+    }
+
+    /// Queues up to `burst` samples instead of `depth` as long as they are small: some megabytes in all.
+    pub const fn with_burst(self, burst: u32) -> Self {
+        Self { burst, ..self }
     }
 
     /// The demand that `topic` can meet.
     pub fn within(self, topic: &Topic) -> Self {
-        Self { reliable: self.reliable && topic.qos.reliable, depth: self.depth.max(1) }
+        let depth = self.depth.max(1);
+        Self { reliable: self.reliable && topic.qos.reliable, depth, burst: self.burst.max(depth) }
     }
 
     /// True if a subscription with this demand also serves `other`.
     pub fn covers(self, other: Self) -> bool {
-        self.reliable >= other.reliable && self.depth >= other.depth
+        self.reliable >= other.reliable && self.depth >= other.depth && self.burst >= other.burst
     }
 }
 

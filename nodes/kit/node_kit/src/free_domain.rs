@@ -1,5 +1,6 @@
 //! Domains without participants.
 
+use crate::bus_error::{BusError, create_error};
 use crate::dds::Network;
 use grainlab_console::Failure;
 use std::net::{Ipv4Addr, UdpSocket};
@@ -42,15 +43,37 @@ impl FreeDomain {
     }
 }
 
-/// A port of a domain, unless it is in use.
+/// Binds a port of a domain; `None` if the port is in use or does not exist, as the last ones of domain 232.
 fn bind(id: u16, offset: u16) -> Option<UdpSocket> {
-    UdpSocket::bind((Ipv4Addr::LOCALHOST, 7400 + 250 * id + offset)).ok()
+    let port = u16::try_from(7400 + 250 * u32::from(id) + u32::from(offset)).ok()?;
+    UdpSocket::bind((Ipv4Addr::LOCALHOST, port)).ok()
 }
 
 /// True if a participant of this domain, at most 101, is on this host: a port for unicast discovery of any possible one
 /// (RTPS 9.6.2.3) is in use.
 pub fn is_in_use(id: u16) -> bool {
     !(0..PARTICIPANTS).all(|n| bind(id, 10 + 2 * n).is_some())
+}
+
+/// True if no other participant of this domain fits on this host: the port for unicast discovery of each possible one is in use.
+fn is_full(id: u16) -> bool {
+    // The last port is the lock between launchers where a launcher chose the domain.
+    (0..=PARTICIPANTS).all(|n| bind(id, 10 + 2 * n).is_none())
+}
+
+/// Returns the error of a participant that could not be created: if the domain is full, what to do.
+pub(crate) fn no_participant(domain: u16, error: &dyn std::error::Error) -> BusError {
+    match create_error("DDS participant", error) {
+        BusError::Network { what, .. } if is_full(domain) => {
+            let reason = format!(
+                "all {} ports of DDS domain {domain} on this host are in use: end other processes of the domain, or set ROS_DOMAIN_ID \
+                 to another one",
+                PARTICIPANTS + 1
+            );
+            BusError::Network { what, reason }
+        }
+        fault => fault,
+    }
 }
 
 /// True if a launcher on this host has taken this domain, at most 101.
@@ -67,6 +90,19 @@ mod tests {
         let (a, b) = (FreeDomain::take().unwrap(), FreeDomain::take().unwrap());
         assert_ne!(a.id, b.id);
         assert!(is_launched(a.id) && is_launched(b.id));
+    }
+
+    #[test]
+    fn a_domain_without_a_free_port_is_named_with_the_variable_that_chooses_another() {
+        let free = FreeDomain::take().unwrap();
+        let sockets: Vec<_> = (0..=PARTICIPANTS).map(|n| bind(free.id, 10 + 2 * n)).collect();
+        let error = free.network().context().err().unwrap().to_string();
+        drop(sockets);
+        assert!(
+            error.contains(&format!("DDS domain {}", free.id)) && error.contains("ROS_DOMAIN_ID"),
+            "{error}"
+        );
+        assert!(!is_full(free.id));
     }
 
     #[test]

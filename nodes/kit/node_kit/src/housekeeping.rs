@@ -41,6 +41,8 @@ pub(crate) struct Housekeeping {
     pub(crate) rosout: Rosout,
     next_beat: Duration,
     next_look: Duration,
+    /// The domain was said to be full.
+    crowded: bool,
 }
 
 impl Housekeeping {
@@ -58,6 +60,7 @@ impl Housekeeping {
             rosout: Rosout::advertise(bus, logger)?,
             next_beat: bus.now() + HEARTBEAT,
             next_look: bus.now() + LOOK,
+            crowded: false,
         })
     }
 
@@ -68,6 +71,12 @@ impl Housekeeping {
         if now >= self.next_beat {
             self.report(node, bus, None)?;
             watchdog::check()?;
+            if !self.crowded
+                && let Some(sentence) = bus.crowding()
+            {
+                self.crowded = true;
+                log::warn!("{sentence}");
+            }
             self.next_beat = now + HEARTBEAT;
         }
         Ok(self.next_beat.saturating_sub(now))

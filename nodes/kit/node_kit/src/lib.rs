@@ -3,6 +3,7 @@
 //!
 //! - `bus`: the [`Bus`] of a node: serialized samples in and out, and a single wait; `sample`, `demand`, `bus_error`:
 //!   its types
+//! - `delivery`: whether the readers of a publisher make progress
 //! - `offer`: the topics, types and QoS that other processes publish
 //! - `typed`: typed publishers and subscriptions; `bulk`: messages too large for one sample; `source`: samples of any topic; `worker`: long
 //!   computations
@@ -17,14 +18,16 @@
 //!   services of a node
 //! - [`pingpong`]: the exchange of the lockstep alone, for measurements
 //! - `tool_bus`: the bus of a tool; `free_domain`: domains without participants; `off_the_bus`: runs in one process; `lock`: locks that survive a panic
-//! - `logging`: log lines on stderr; `rosout`: the same on `/rosout`, between steps; `wall_clock`: their stamps
+//! - `logging`: log lines on stderr; `rosout`: the same on `/rosout`, between steps
 
 mod admission;
+mod announced;
 mod args;
 mod bulk;
 mod bus;
 mod bus_error;
 mod dds;
+mod delivery;
 mod demand;
 mod executor;
 mod free_domain;
@@ -48,16 +51,17 @@ mod services;
 mod source;
 mod tool_bus;
 mod typed;
-mod wall_clock;
 pub mod watchdog;
 mod worker;
 
 pub use admission::{Participant, Process, Stranger};
+pub use announced::{Announced, TooLarge};
 pub use args::{ArgsError, Assignment, RosArgs};
 pub use bulk::{BULK_LIMIT, BulkPublisher, BulkSubscription};
 pub use bus::{Bus, Caller, PublisherId, SubscriptionId, Wake};
 pub use bus_error::{BusError, tolerate_full};
-pub use dds::{DdsBus, MAX_DOMAIN, Network, NetworkError, Reach, StaticPeers};
+pub use dds::{CROWDING_ADVICE, DdsBus, MAX_DOMAIN, Network, NetworkError, Reach, StaticPeers, crowding};
+pub use delivery::Delivery;
 pub use demand::Demand;
 pub use executor::{Component, step_all};
 pub use free_domain::{FreeDomain, is_in_use, is_launched};
@@ -75,7 +79,7 @@ pub use offer::{Offer, type_hash};
 pub use packing_node::{Declined, Measure, PackingNode, Tally, Words, step_or_none};
 pub use parameters::{
     FromParameter, IntoParameter, ParameterError, ParameterSpec, ParameterValue, Parameters, Range,
-    parameter_text, parameters_of_file, parse_value,
+    parameter_text, parse_value,
 };
 pub use peers::{Liveliness, Peer, PeerWatch, SILENCE};
 pub use run::{NodeSpec, drive, run_node, use_sim_time};

@@ -1,9 +1,8 @@
 //! Log lines: to stderr in the format of ROS 2, and to `/rosout`.
 
 use crate::args::RosArgs;
-use crate::dds::LOG_TARGET;
-use crate::wall_clock::wall_nanos;
-use grainlab_console::{colour_wanted, write_above_live_line};
+use crate::dds::{LOG_TARGET, wall_nanos};
+use grainlab_console::{colour_wanted, escape_controls, write_above_live_line};
 use grainlab_msgs::rcl_interfaces::Log;
 use grainlab_msgs::wall_stamp;
 use log::{Level, LevelFilter, Metadata, Record};
@@ -16,9 +15,8 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 /// Maximum number of lines queued for `/rosout`; a full queue drops the oldest.
 const BACKLOG: usize = 1000;
 
-/// Libraries of which only errors are logged: their warnings concern single packets, or single clients.
-const LIBRARIES: [&str; 6] =
-    [LOG_TARGET, "ros2_client", "mio", "foxglove", "tokio_tungstenite", "tungstenite"];
+/// Libraries whose errors alone are logged, because their warnings concern single packets.
+const LIBRARIES: [&str; 3] = [LOG_TARGET, "ros2_client", "mio"];
 
 /// The logger of the process, of every thread that entered no other one.
 static OF_PROCESS: Logger = Logger {
@@ -91,7 +89,6 @@ impl Logger {
         CURRENT.set(self);
     }
 
-    /// The logger of this thread.
     pub(crate) fn of_thread() -> &'static Logger {
         CURRENT.get()
     }
@@ -194,7 +191,10 @@ impl log::Log for Router {
         let mut settings = CURRENT.get().lock();
         // Stamped under the lock, so that the lines of all threads are queued in the order of their stamps.
         let stamp = wall_stamp(wall_nanos());
-        let line = || format!("[{name}] [{}.{:09}] [{}]: {text}", stamp.sec, stamp.nanosec, settings.name);
+        let line = || {
+            let text = escape_controls(&text);
+            format!("[{name}] [{}.{:09}] [{}]: {text}", stamp.sec, stamp.nanosec, settings.name)
+        };
         match &settings.to {
             Destination::None => {}
             Destination::Stderr { colour: true } if !paint.is_empty() => {
@@ -250,5 +250,20 @@ mod tests {
         let asked = settings(LevelFilter::Info, &[("ros2_client", LevelFilter::Trace)]);
         assert_eq!(asked.level_of("ros2_client::node"), LevelFilter::Trace);
         assert_eq!(asked.level_of("mio"), LevelFilter::Error);
+    }
+
+    #[test]
+    fn a_line_that_quotes_an_escape_sequence_shows_it_and_the_other_lines_follow_each_other() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("n.log");
+        let logger = Logger::of_node("/n", &RosArgs::default(), File::create(&path).unwrap());
+        // A thread of its own, because a thread keeps its logger.
+        let logs = move || {
+            logger.enter();
+            log::error!("a stranger \x1b[31m is here");
+        };
+        std::thread::spawn(logs).join().unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(text.contains(r"a stranger \u{1b}[31m is here") && text.ends_with('\n'), "{text:?}");
     }
 }

@@ -123,7 +123,6 @@ impl Names {
     }
 }
 
-/// Joins a namespace and a relative name.
 fn join(namespace: &str, name: &str) -> String {
     format!("{}/{name}", namespace.strip_suffix('/').unwrap_or(namespace))
 }

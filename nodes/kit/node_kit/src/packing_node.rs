@@ -103,6 +103,12 @@ impl Tally {
         self.without_network += 1;
         self.trouble = Some(reason);
     }
+
+    /// Counts a packing whose measurement failed in part, for this reason.
+    pub fn count_failed(&mut self, reason: String) {
+        self.failed += 1;
+        self.trouble = Some(reason);
+    }
 }
 
 /// A step as a value of the diagnostics.

@@ -14,7 +14,6 @@ pub(crate) struct Rosout {
 }
 
 impl Rosout {
-    /// Advertises the topic `/rosout`.
     pub(crate) fn advertise(bus: &mut dyn Bus, logger: Option<&'static Logger>) -> Result<Self, BusError> {
         Ok(Self { publisher: Publisher::advertise(bus, &topics::ROSOUT)?, logger })
     }

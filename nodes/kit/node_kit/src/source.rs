@@ -55,12 +55,4 @@ impl Source {
             Self::Packings(packings) => packings.patience(now),
         }
     }
-
-    /// Ends the subscription.
-    pub fn close(self, bus: &mut dyn Bus) {
-        match self {
-            Self::Samples(id) => bus.unsubscribe(id),
-            Self::Packings(packings) => packings.close(bus),
-        }
-    }
 }

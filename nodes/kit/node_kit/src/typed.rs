@@ -45,7 +45,6 @@ impl<T: Message> Publisher<T> {
 #[derive(Debug)]
 pub struct Subscription<T> {
     id: SubscriptionId,
-    /// Number of samples that did not decode.
     undecodable: AtomicU64,
     message: PhantomData<fn() -> T>,
 }

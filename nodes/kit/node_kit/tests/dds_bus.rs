@@ -271,22 +271,6 @@ fn bodies_of_both_byte_orders_arrive_as_they_were_sent_on_a_topic_of_any_type() 
 }
 
 #[test]
-fn seven_participants_find_each_other_on_plain_loopback() {
-    const EACH: usize = 7;
-    let claimed = claim();
-    let network = claimed.network();
-    let topic: &Topic = &topics::DIAGNOSTICS;
-    let mut buses: Vec<DdsBus> = (0..EACH).map(|n| open(network, &format!("n{n}"))).collect();
-    let handles: Vec<_> = buses
-        .iter_mut()
-        .map(|bus| (bus.advertise(topic).unwrap(), bus.subscribe(topic, Demand::reliable(100)).unwrap()))
-        .collect();
-    for (bus, (publisher, subscription)) in buses.iter_mut().zip(handles) {
-        until(bus, "six peers", |b| b.readers(publisher) == EACH - 1 && b.writers(subscription) == EACH - 1);
-    }
-}
-
-#[test]
 fn the_ros_graph_shows_the_node_and_its_endpoints() {
     use ros2_client::entities_info::ParticipantEntitiesInfo;
     use ros2_client::qos::{Durability, History, WhenFull};
@@ -386,4 +370,26 @@ fn a_process_takes_its_own_samples_after_those_that_arrived_before() {
     let taken: Vec<String> =
         std::iter::from_fn(|| rosout.take_valid(&mut a).unwrap()).map(|(l, _)| l.msg).collect();
     assert_eq!(taken, ["theirs", "ours"]);
+}
+
+#[test]
+fn a_burst_of_small_samples_waits_beyond_the_depth_of_a_reader() {
+    const SAMPLES: i64 = 4000;
+    let (_domain, mut a, mut b) = two();
+    let publisher = a.advertise(&topics::STRAIN_RATE).unwrap();
+    let subscription = b.subscribe(&topics::STRAIN_RATE, Demand::reliable(10).with_burst(5000)).unwrap();
+    until(&mut a, "a sees a reader", |a| a.readers(publisher) == 1);
+    until(&mut a, "the reader knows the writer", |a| a.is_known_to_readers(publisher));
+    for _ in 0..SAMPLES {
+        a.publish(publisher, &[0, 1, 0, 0, 7, 7, 7, 7]).unwrap();
+    }
+    until(&mut a, "all acknowledged", |a| a.unacknowledged(publisher) == 0);
+    let mut taken = Vec::new();
+    until(&mut b, "the last sample", |b| {
+        while let Some(sample) = b.take(subscription).unwrap() {
+            taken.push(sample.info.sequence);
+        }
+        taken.last() == Some(&SAMPLES)
+    });
+    assert!(taken.into_iter().eq(1..=SAMPLES));
 }

@@ -44,8 +44,9 @@ fn a_full_queue_from_discovery_to_the_event_loop_does_not_hold_up_the_applicatio
     let (done, made) = sync_channel(1);
     std::thread::spawn(move || {
         let [a, b] = [&in_loop, &in_discovery].map(Barrier::clone);
-        let held =
-            builder().data_filter(move |_, _| (a.pass(), true).1).participant_listener(move |_| b.pass());
+        let held = builder()
+            .data_filter(move |_, _| (a.pass(), true).1)
+            .participant_listener(move |_| (b.pass(), false).1);
         let (participant, sender) = (held.build().unwrap(), builder().build().unwrap());
         let (qos, kind) = (QosPolicies::default(), TopicKind::NoKey);
         let topic_of = |p: &DomainParticipant| p.create_topic("t".into(), "u8".into(), &qos, kind).unwrap();

@@ -17,20 +17,21 @@ fn two_dozen_nodes_of_one_host_find_each_other() {
         .map(|i| {
             let mut bus = DdsBus::open(claimed.network(), Names::new(&format!("node_{i}")).unwrap()).unwrap();
             let publisher = bus.advertise(&topics::RUN_STATE).unwrap();
-            bus.subscribe(&topics::RUN_STATE, Demand::reliable(10)).unwrap();
-            (bus, publisher)
+            let subscription = bus.subscribe(&topics::RUN_STATE, Demand::reliable(10)).unwrap();
+            (bus, publisher, subscription)
         })
         .collect();
     let begin = Instant::now();
     loop {
-        for (bus, _) in &mut nodes {
+        for (bus, ..) in &mut nodes {
             bus.wait(Duration::ZERO);
         }
-        let found: Vec<usize> = nodes.iter().map(|(bus, publisher)| bus.readers(*publisher)).collect();
-        if found.iter().all(|n| *n == NODES - 1) {
+        let found: Vec<[usize; 2]> =
+            nodes.iter().map(|(bus, p, s)| [bus.readers(*p), bus.writers(*s)]).collect();
+        if found.iter().all(|found| *found == [NODES - 1; 2]) {
             break;
         }
-        assert!(begin.elapsed() < TIME_LIMIT, "readers found by each: {found:?}");
+        assert!(begin.elapsed() < TIME_LIMIT, "readers and writers found by each: {found:?}");
         std::thread::sleep(Duration::from_millis(2));
     }
     println!("{NODES} nodes opened in {:.1?}, all matched {:.1?} later", begin - opened, begin.elapsed());

@@ -2,7 +2,7 @@
 
 use crate::Settings;
 use grainlab_acoustics::{AcousticsError, Measurement, Trace};
-use grainlab_core::results::NotJammed;
+use grainlab_core::results::NoStiffness;
 use grainlab_core::{Packing, Vec3, stress};
 use grainlab_msgs::boundary::{BoundaryError, WaveSpeedsReading, vector_message, wave_speeds_message};
 use grainlab_msgs::std_msgs::Header;
@@ -28,11 +28,11 @@ pub enum MeasureError {
     Refused(BoundaryError),
     /// No wave propagates. Not a fault: a gas of grains does not transmit sound.
     #[error("packing of step {step} has no wave speeds: {reason}")]
-    NotJammed {
+    NoStiffness {
         /// Step of the packing.
         step: u64,
         /// Reason of the failure.
-        reason: NotJammed,
+        reason: NoStiffness,
     },
     /// The measurement failed.
     #[error("wave speeds of the packing of step {step} are not measured: {reason}")]
@@ -57,7 +57,7 @@ impl MeasureError {
     pub fn step(&self) -> Option<u64> {
         match self {
             Self::Undecodable(_) | Self::Refused(_) => None,
-            Self::NotJammed { step, .. } | Self::Acoustics { step, .. } | Self::Result { step, .. } => {
+            Self::NoStiffness { step, .. } | Self::Acoustics { step, .. } | Self::Result { step, .. } => {
                 Some(*step)
             }
         }
@@ -69,7 +69,7 @@ pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, 
     let packing = Packing::try_from(message).map_err(MeasureError::Refused)?;
     let step = packing.step;
     let found = grainlab_acoustics::measure(&packing, &settings.0).map_err(|e| match e {
-        AcousticsError::NotJammed(reason) => MeasureError::NotJammed { step, reason },
+        AcousticsError::NoStiffness(reason) => MeasureError::NoStiffness { step, reason },
         reason => MeasureError::Acoustics { step, reason },
     })?;
     messages(&message.header, &packing, &found).map_err(|reason| MeasureError::Result { step, reason })

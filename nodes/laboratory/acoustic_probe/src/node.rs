@@ -74,7 +74,7 @@ impl Measure for Probe {
         self.declined_step = error.step().or(self.declined_step);
         match error {
             MeasureError::Undecodable(_) | MeasureError::Refused(_) => Declined::Refused,
-            MeasureError::NotJammed { .. } => Declined::NoNetwork,
+            MeasureError::NoStiffness { .. } => Declined::NoNetwork,
             MeasureError::Acoustics { .. } | MeasureError::Result { .. } => Declined::Failed,
         }
     }

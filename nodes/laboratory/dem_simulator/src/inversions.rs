@@ -24,7 +24,6 @@ impl Inversions {
         Ok(Self { microstructures, latest: awaited.iter().map(|topic| (*topic, None)).collect() })
     }
 
-    /// Receives all microstructures.
     pub(crate) fn receive(&mut self, bus: &mut dyn Bus) -> Result<(), BusError> {
         let Some(subscription) = &mut self.microstructures else { return Ok(()) };
         while let Some((found, _)) = subscription.take_valid(bus)? {

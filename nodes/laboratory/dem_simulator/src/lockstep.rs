@@ -29,7 +29,6 @@ pub(crate) struct Lockstep {
     pub(crate) counts: Counts,
 }
 
-/// Counters of the lockstep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Counts {
     pub(crate) exchanges: u64,

@@ -176,7 +176,6 @@ impl DemSimulator {
         self.send_queue.push_state(self.run_state.id(), to_cdr(&message));
     }
 
-    /// Publishes the current packing.
     pub(crate) fn publish_packing(&mut self) -> Result<(), ExperimentError> {
         let message = messages::packing(&self.run)?;
         self.packings = Packings { last_step: message.step, count: self.packings.count.saturating_add(1) };

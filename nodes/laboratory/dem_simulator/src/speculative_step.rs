@@ -16,11 +16,8 @@ pub(crate) const GRAINS: u32 = 4000;
 pub(crate) struct SpeculativeStep {
     sequence: u64,
     rate: [f64; 6],
-    /// The advanced run.
     pub(crate) run: Simulation,
-    /// Outcome of the step.
     pub(crate) result: Result<StepOutcome, ExperimentError>,
-    /// Time of the computation.
     pub(crate) took: Duration,
 }
 

@@ -28,6 +28,13 @@ fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
     let bounds = InferredQuantity::ALL.map(|q| covariance.and_then(|_| estimate.interval(q)));
     let shares = InferredQuantity::ALL.map(|q| estimate.information(q));
     let (gamma_over_delta, gamma_over_delta_source) = gamma_fields(estimate.gamma);
+    let of_model = estimate.warnings.iter().map(ToString::to_string);
+    // The first warning is the reason of the status.
+    let is_of_model = estimate.status == Status::Contradictory && !observed.in_conflict;
+    let warnings = match is_of_model {
+        true => of_model.chain(observed.notes.iter().cloned()).collect(),
+        false => observed.notes.iter().cloned().chain(of_model).collect(),
+    };
     let mut message = msg::Estimate {
         model: estimate.model.to_owned(),
         calibration: estimate.calibration.clone(),
@@ -43,12 +50,7 @@ fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
         degrees_of_freedom: misfit.degrees_of_freedom as u32,
         condition_number: estimate.condition_number().into_iter().collect(),
         information: std::array::from_fn(|i| shares[i / INPUTS].map_or(0.0, |s| s[i % INPUTS])),
-        warnings: observed
-            .notes
-            .iter()
-            .cloned()
-            .chain(estimate.warnings.iter().map(ToString::to_string))
-            .collect(),
+        warnings,
         ..Default::default()
     };
     for (field, value) in message.quantities_mut().into_iter().zip(estimate.structure.values()) {

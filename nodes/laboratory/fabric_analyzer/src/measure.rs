@@ -6,7 +6,6 @@ use grainlab_core::results::PackingReport;
 use grainlab_experiment::PathPosition;
 use grainlab_micromechanics::{MicroError, analyze};
 use grainlab_msgs::boundary::{BoundaryError, packing_report_message};
-use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{DecodeError, msg};
 
 /// The measurement of one packing.
@@ -16,6 +15,8 @@ pub struct Measured {
     pub report: PackingReport,
     /// The message that is published.
     pub message: msg::PackingReport,
+    /// Details of why the packing has no stiffness, which the message lacks.
+    pub why_no_stiffness: Option<String>,
 }
 
 /// Why a packing is not measured.
@@ -52,15 +53,8 @@ pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, 
     let mut found =
         analyze(&packing, &settings.0).map_err(|reason| MeasureError::Analysis { step, reason })?;
     PathPosition::of(&message.run_state).inspect(|position| position.judge_strain(&mut found.report));
-    Measured::of(&message.header, found.report)
-}
-
-impl Measured {
-    /// With the message; `header` is that of the message of the packing.
-    pub fn of(header: &Header, report: PackingReport) -> Result<Self, MeasureError> {
-        let step = report.step;
-        let message = packing_report_message(header.clone(), &report)
-            .map_err(|reason| MeasureError::Result { step, reason })?;
-        Ok(Self { report, message })
-    }
+    let why_no_stiffness = found.why_no_stiffness();
+    let message = packing_report_message(message.header.clone(), &found.report)
+        .map_err(|reason| MeasureError::Result { step, reason })?;
+    Ok(Measured { report: found.report, message, why_no_stiffness })
 }

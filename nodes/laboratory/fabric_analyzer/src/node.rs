@@ -53,8 +53,14 @@ impl Measure for Analysis {
                 );
             }
             Some(none) => {
-                log::warn!("packing of step {step} has no stiffness: {none}");
-                tally.count_without_network(none.to_string());
+                let why = measured.why_no_stiffness.clone().unwrap_or_else(|| none.to_string());
+                if none.is_fault() {
+                    log::error!("packing of step {step} has no stiffness: {why}");
+                    tally.count_failed(why);
+                } else {
+                    log::warn!("packing of step {step} has no stiffness: {why}");
+                    tally.count_without_network(why);
+                }
             }
         }
         Ok(())

@@ -7,10 +7,7 @@ use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::msg::{self, ElasticStiffness, Packing};
 use grainlab_msgs::{to_cdr, topics};
 use grainlab_node_kit::{Bus, Demand, Hub, Level, Names, Node, Parameters, Publisher, RosArgs, Subscription};
-use lattice::{DIAMETER, OVERLAP, lattice};
-
-#[path = "../../../kernels/micromechanics/tests/claims/touching_itself.rs"]
-mod lattice;
+use grainlab_testkit::packings::{DIAMETER, OVERLAP, lattice};
 
 fn message(overlap: f64) -> Packing {
     packing_message(&lattice(overlap), "lattice", vec![1, 2, 3])
@@ -38,12 +35,6 @@ fn a_simple_cubic_lattice_has_the_moduli_of_its_springs() {
     // Three contacts of force F over the faces: p = F/l².
     let pressure = Material::GLASS.normal_force(DIAMETER / 4.0, OVERLAP) / (edge * edge);
     assert!((report.pressure() / pressure - 1.0).abs() < 1e-12);
-}
-
-#[test]
-fn a_measurement_is_a_pure_function_of_the_message() {
-    let first = measure(&message(OVERLAP), &Settings::default()).unwrap();
-    assert_eq!(measure(&message(OVERLAP), &Settings::default()).unwrap(), first);
 }
 
 #[test]
@@ -81,6 +72,25 @@ fn without_a_network_there_is_a_report_with_the_reason_and_a_warning() {
     node.step(&mut node_bus).unwrap();
     assert_eq!(reports.take_valid(&mut bus).unwrap().unwrap().0.stiffness.len(), 1);
     assert_eq!((node.health().level, refused(&node_bus)), (Level::Ok, 0));
+}
+
+#[test]
+fn a_packing_that_overlaps_beyond_every_contact_law_has_a_report_without_moduli_and_counts_as_failed() {
+    let hub = Hub::new(3);
+    let mut bus = hub.bus(Names::new("source").unwrap());
+    let source: Publisher<Packing> = Publisher::advertise(&mut bus, &topics::PACKING).unwrap();
+    let reports: Subscription<msg::PackingReport> =
+        Subscription::subscribe(&mut bus, &topics::PACKING_REPORT, Demand::reliable(8)).unwrap();
+    source.publish(&mut bus, &message(0.12 * DIAMETER)).unwrap();
+    let mut node_bus = hub.bus(Names::new("fabric_analyzer").unwrap());
+    let mut node = FabricAnalyzer::new(&mut node_bus, Settings::default()).unwrap();
+    node.step(&mut node_bus).unwrap();
+    let (deep, _) = reports.take_valid(&mut bus).unwrap().unwrap();
+    assert_eq!((deep.jamming, deep.stiffness.len()), (msg::PackingReport::TOO_DEEP, 0));
+    assert_eq!((deep.contacts.contacts, deep.contacts.coordination), (3, 6.0));
+    let health = node.health();
+    assert!(health.level == Level::Warn && health.message.contains("there are no moduli"), "{health:?}");
+    assert!(health.values.contains(&("failed".to_owned(), "1".to_owned())), "{health:?}");
 }
 
 #[test]
@@ -130,7 +140,8 @@ fn the_method_asked_for_is_used_and_said() {
     assert!(c44[0] > 0.0 && (c44[1] / c44[0] - 1.0).abs() < 1e-2, "{c44:?}");
     assert!(network.stddev.iter().all(|s| *s > 0.0));
     // Smooth grains on such a lattice slip past each other under any pressure.
-    assert!(matches!(with("prestressed"), Err(MeasureError::Analysis { step: 12, .. })));
+    let unstable = with("prestressed").unwrap().message;
+    assert_eq!((unstable.stiffness.len(), unstable.jamming), (0, msg::PackingReport::UNSOLVED));
 }
 
 #[test]

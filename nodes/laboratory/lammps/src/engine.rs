@@ -1,5 +1,6 @@
 //! One run of LAMMPS as an engine.
 
+use crate::coulomb::Coulomb;
 use crate::exchange::{Exchange, FIRST_STEP, HOLD, OBSERVED};
 use crate::files::{CONTACT_COLUMNS, Dumps, GRAIN_COLUMNS, data_file};
 use crate::folder::Folder;
@@ -52,6 +53,8 @@ pub(crate) struct Running {
     frame: Frame,
     /// Angular velocity of the affine motion that spins contain, 1/s.
     spin: Vec3,
+    /// The friction of the last steps: a phase that ends is recorded after the next one has begun.
+    coulomb: Coulomb,
     survey: Survey,
     seen: Observables,
     kept: Mutex<Kept>,
@@ -123,6 +126,7 @@ impl Running {
             known: Packing { time_step, friction: settings.friction, ..packing.clone() },
             frame: Frame::of(&packing.cell),
             spin: Vec3::zeros(),
+            coulomb: Coulomb::of_steps(settings, &Mat3::zeros()),
             survey,
             seen,
             kept: Mutex::default(),
@@ -151,7 +155,8 @@ impl Running {
         );
         link.program.tell(&commands)?;
         link.program.ask([])?;
-        let dumps = Dumps { grains: &grains, contacts: &contacts, frame: self.frame, spin: self.spin };
+        let (frame, spin, coulomb) = (self.frame, self.spin, self.coulomb);
+        let dumps = Dumps { grains: &grains, contacts: &contacts, frame, spin, coulomb };
         dumps.read(&self.known)
     }
 
@@ -362,12 +367,14 @@ impl ParticleEngine for Running {
 
     fn run(&mut self, steps: u32) -> Result<(Mat3, Observables), ExperimentError> {
         *self.kept() = Kept::default();
+        let rate = SymTensor::from_voigt(self.rate).matrix();
+        self.coulomb = Coulomb::of_steps(&self.settings, &rate);
         let mut total = Mat3::identity();
         let mut left = steps;
         while left > 0 {
             let count = left.min(Exchange::longest(&self.settings, self.known.time_step));
             let dt = self.known.time_step;
-            let step = Mat3::identity() + SymTensor::from_voigt(self.rate).matrix() * dt;
+            let step = Mat3::identity() + rate * dt;
             let deformation = step.pow(count);
             let Some(cell) = self.known.cell.deformed(&deformation) else {
                 return Err(grainlab_dem::DemError::Cell { step: self.known.step }.into());

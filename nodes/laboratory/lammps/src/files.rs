@@ -1,9 +1,10 @@
 //! Packings to and from files of LAMMPS.
 
+use crate::coulomb::Coulomb;
 use crate::frame::Frame;
 use crate::refusal::refused;
-use grainlab_core::{Contact, Packing, Vec3, effective_radius};
-use grainlab_dem::{DemError, OVERLAP_LIMIT};
+use grainlab_core::{Contact, OVERLAP_LIMIT, Packing, Vec3, effective_radius};
+use grainlab_dem::DemError;
 use grainlab_experiment::ExperimentError;
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader};
@@ -48,6 +49,7 @@ pub(crate) struct Dumps<'a> {
     pub(crate) frame: Frame,
     /// Angular velocity of the affine motion that spins contain, 1/s.
     pub(crate) spin: Vec3,
+    pub(crate) coulomb: Coulomb,
 }
 
 impl Dumps<'_> {
@@ -85,12 +87,11 @@ impl Dumps<'_> {
             true
         })?;
         contacts.sort_by_key(|c: &Contact| (c.i, c.j, c.image));
-        let radii = |c: &Contact| packing.radii[c.i as usize].min(packing.radii[c.j as usize]);
-        if let Some(c) = contacts.iter().find(|c| c.overlap > 2.0 * OVERLAP_LIMIT * radii(c)) {
+        if let Some(c) = contacts.iter().find(|c| packing.overlap_ratio(c) > OVERLAP_LIMIT) {
             let [first, second] = [c.i, c.j].map(|g| packing.ids[g as usize]);
             return Err(DemError::Overlap { step: packing.step, first, second, overlap: c.overlap }.into());
         }
-        packing.contacts = contacts;
+        packing.contacts = self.coulomb.limited(&packing, contacts);
         Ok(packing)
     }
 }
@@ -113,10 +114,7 @@ fn contact(packing: &Packing, [i, j]: [usize; 2], branch: Vec3, force: Vec3) -> 
     }
     let normal = branch / distance;
     let normal_force = packing.law.normal_force(&packing.material, effective_radius(a, b), overlap);
-    let force = force - normal * force.dot(&normal);
-    // The dashpot is in it where grains move.
-    let limit = packing.friction * normal_force;
-    let tangential_force = if force.norm() > limit { force * (limit / force.norm()) } else { force };
+    let tangential_force = force - normal * force.dot(&normal);
     let pressed = Contact::pressed([i as u32, j as u32], image, normal, overlap, normal_force);
     Some(Contact { tangential_force, ..pressed })
 }

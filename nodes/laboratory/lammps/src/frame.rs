@@ -35,7 +35,6 @@ impl Frame {
         tilts.into_iter().fold(0.0, f64::max)
     }
 
-    /// A vector in the axes of LAMMPS.
     pub(crate) fn in_lammps(&self, v: &Vec3) -> Vec3 {
         self.rotation.tr_mul(v)
     }

@@ -2,9 +2,9 @@
 
 use super::plan::NodePlan;
 use crate::pipe::VARIABLE;
-use grainlab_console::{Failure, program};
+use grainlab_console::{Failure, append_in, program};
 use grainlab_node_kit::{MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE, RunId};
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{ExitStatus, Stdio};
@@ -105,12 +105,15 @@ impl Child {
         Ok(())
     }
 
-    /// Repeats the last errors of its log on stderr; of another program its last lines.
+    /// Repeats the first error of its log, often the cause, and the last two on stderr; of another program its last three lines.
     pub fn quote_log(&self, logs: &Path) {
-        let text = std::fs::read_to_string(log_path(logs, &self.plan.name)).unwrap_or_default();
+        let text = std::fs::read_to_string(logs.join(log_name(&self.plan.name))).unwrap_or_default();
         let is_error = |l: &&str| self.plan.node.is_none() || l.contains("ERROR") || l.contains("panicked");
         let errors: Vec<&str> = text.lines().filter(is_error).collect();
-        errors.iter().skip(errors.len().saturating_sub(3)).for_each(|l| grainlab_console::say!("  {l}"));
+        let first = usize::from(self.plan.node.is_some());
+        let is_quoted = |n: usize| n < first || n + 3 - first >= errors.len();
+        let quoted = errors.iter().enumerate().filter(|(n, _)| is_quoted(*n));
+        quoted.for_each(|(_, line)| grainlab_console::say!("  {line}"));
     }
 
     /// Sends `signal` if it runs.
@@ -135,10 +138,23 @@ pub(crate) fn end_with_launcher(command: &mut Command) {
 }
 
 pub(crate) fn open_log(logs: &Path, name: &str) -> io::Result<File> {
-    std::fs::create_dir_all(logs)?;
-    OpenOptions::new().create(true).append(true).open(log_path(logs, name))
+    append_in(logs, &log_name(name))
 }
 
-fn log_path(logs: &Path, name: &str) -> PathBuf {
-    logs.join(format!("{name}.log"))
+fn log_name(name: &str) -> String {
+    format!("{name}.log")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_log_of_a_node_is_never_a_link_to_another_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let other = folder.path().join("precious");
+        std::os::unix::fs::symlink(&other, folder.path().join(log_name("servo"))).unwrap();
+        let error = open_log(folder.path(), "servo").unwrap_err().to_string();
+        assert!(error.contains("it is a link") && !other.exists(), "{error}");
+    }
 }

@@ -54,6 +54,10 @@ pub(super) struct Followed {
     pub(super) begun: bool,
     /// Last message of the simulator on what it does or waits for.
     simulator: Option<String>,
+    /// The simulator was discovered.
+    simulator_joined: bool,
+    /// That the DDS domain is full, in words.
+    crowding: Option<String>,
     /// The step at which the run began or resumed.
     pub(super) first_step: Option<u64>,
     pub(super) finished: Option<RunState>,
@@ -84,6 +88,8 @@ impl Followed {
             outline,
             begun: false,
             simulator: None,
+            simulator_joined: false,
+            crowding: None,
             first_step: None,
             finished: None,
             failed: None,
@@ -126,7 +132,6 @@ impl Followed {
         (self.reasons, Received { packings, results: self.results })
     }
 
-    /// Enters an event.
     pub(super) fn take(&mut self, event: Event) {
         match event {
             Event::State(state) => {
@@ -145,6 +150,11 @@ impl Followed {
                 self.left.insert(pid);
             }
             Event::Open => {}
+            Event::SimulatorJoined => self.simulator_joined = true,
+            Event::Crowded(sentence) => {
+                grainlab_console::say!("grainlab: {sentence}");
+                self.crowding = Some(sentence);
+            }
             Event::Measured(topic, step) => {
                 self.note_result(topic, step);
                 self.pending.measured(topic, step);
@@ -210,8 +220,10 @@ impl Followed {
 
     /// Prints the condition that a run that has not begun waits for, as far as its simulator has said it.
     pub(super) fn say_what_is_waited_for(&self) {
-        if let Some(what) = said::awaited(self.simulator.as_deref(), self.first_step) {
-            self.progress.say(&format!("the run has not begun: {what}"));
+        let simulator = self.simulator.as_deref();
+        if let Some(what) = said::awaited(simulator, self.simulator_joined, self.first_step) {
+            let crowding = self.crowding.iter().map(|sentence| format!(" ({sentence})"));
+            self.progress.say(&format!("the run has not begun: {what}{}", crowding.collect::<String>()));
         }
     }
 }

@@ -6,12 +6,14 @@ mod entry;
 mod scope;
 mod words;
 
-use crate::nodes::{NodeKind, Viewer};
+use crate::nodes::NodeKind;
 use crate::plan::{NodePlan, PlanError};
-use entry::{Entry, File, Group, Include, Placed, Text};
+use entry::{Entry, File, Placed};
+use grainlab_console::input;
 use scope::Scope;
 use std::collections::BTreeMap;
 use std::path::Path;
+use words::{ADVICE, OF_ROS2};
 
 /// The built-in launch files; the first one is the default.
 pub const BUILT_IN: [(&str, &str); 2] = [
@@ -25,6 +27,8 @@ const OF_LAUNCHER: [(&str, &str, &str); 3] =
 
 /// Maximum number of processes of a run. A member number is one byte: 0 means none, and 255 is the launcher.
 const PLACES: usize = 254;
+
+const DIRNAME: &str = "$(dirname)";
 
 /// Levels of files that include each other.
 const DEEPEST: usize = 16;
@@ -44,14 +48,14 @@ impl LaunchFile {
     /// # Errors
     /// An action, a key or a substitution that is not supported, with its line.
     pub fn parse(text: &str, folder: &Path) -> Result<Self, PlanError> {
-        let mut has_others = false;
-        let entries = read(text, folder, 0, &mut has_others)?;
+        let file = File { launch: read(text, folder, 0)? };
         let mut arguments = Vec::new();
-        declared(&entries, &mut arguments);
+        declared(&file.launch, &mut arguments);
         // A resumed run does not read the included files again: their text is kept with this one.
-        let whole = || serde_json::to_string(&File { launch: entries.clone() });
-        let text = if has_others { whole().map_err(|e| PlanError(e.to_string()))? } else { text.to_owned() };
-        Ok(Self { text, entries, arguments })
+        let has_others = text.contains(DIRNAME) || text.contains("include");
+        let whole = || serde_json::to_string(&file).map_err(|e| PlanError(e.to_string()));
+        let text = if has_others { whole()? } else { text.to_owned() };
+        Ok(Self { text, entries: file.launch, arguments })
     }
 
     /// Text of the file, with those that it includes.
@@ -69,15 +73,11 @@ impl LaunchFile {
     ///
     /// # Errors
     /// As [`LaunchFile::nodes`], of a file that is not given the args of a run.
-    pub fn without_run(
-        &self,
-        values: &BTreeMap<&str, String>,
-        viewers: &'static [Viewer],
-    ) -> Result<Option<Vec<NodePlan>>, PlanError> {
+    pub fn without_run(&self, values: &BTreeMap<&str, String>) -> Result<Option<Vec<NodePlan>>, PlanError> {
         if OF_LAUNCHER.iter().any(|(name, ..)| self.arguments.iter().any(|(declared, _)| declared == name)) {
             return Ok(None);
         }
-        let plans = self.processes(values, viewers)?;
+        let plans = self.processes(values)?;
         let is_run = plans.is_empty() || plans.iter().any(|p| p.is(NodeKind::DemSimulator));
         Ok((!is_run).then_some(plans))
     }
@@ -85,20 +85,16 @@ impl LaunchFile {
     /// The nodes of a run to start, in order, with these values for arguments.
     ///
     /// # Errors
-    /// If the file starts a node that is neither of the laboratory nor among `viewers`, or is no file of a run.
-    pub fn nodes(
-        &self,
-        values: &BTreeMap<&str, String>,
-        viewers: &'static [Viewer],
-    ) -> Result<Vec<NodePlan>, PlanError> {
-        let nodes = self.processes(values, viewers)?;
+    /// If the file starts a node that does not exist, or is no file of a run.
+    pub fn nodes(&self, values: &BTreeMap<&str, String>) -> Result<Vec<NodePlan>, PlanError> {
+        let nodes = self.processes(values)?;
         // The end of one of these nodes ends the run in any case: the key is for the launch of ROS 2.
         let ends_run = |n: &NodePlan| matches!(n.node, Some(NodeKind::DemSimulator | NodeKind::Recorder));
         if let Some(n) = nodes.iter().find(|n| n.ends_all && !ends_run(n)) {
             let reason = "on_exit: in a run \"shutdown\" is supported for dem_simulator and recorder";
             return Err(PlanError::of(&n.name, reason));
         }
-        for node in NodeKind::all(viewers) {
+        for node in NodeKind::all() {
             let count = nodes.iter().filter(|n| n.is(node)).count();
             if !node.per_run().0.contains(&count) {
                 return Err(PlanError::count(node, count));
@@ -107,11 +103,7 @@ impl LaunchFile {
         Ok(nodes)
     }
 
-    fn processes(
-        &self,
-        values: &BTreeMap<&str, String>,
-        viewers: &'static [Viewer],
-    ) -> Result<Vec<NodePlan>, PlanError> {
+    fn processes(&self, values: &BTreeMap<&str, String>) -> Result<Vec<NodePlan>, PlanError> {
         let known = || self.arguments.iter().map(|(n, _)| n.as_str()).collect::<Vec<_>>().join(", ");
         if let Some(name) = values.keys().find(|k| self.arguments.iter().all(|(n, _)| n != *k)) {
             if let Some((name, default, parameter)) = OF_LAUNCHER.into_iter().find(|(n, ..)| n == name) {
@@ -126,7 +118,7 @@ impl LaunchFile {
         }
         let variables = values.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect();
         let mut nodes = Vec::new();
-        Scope::of(variables).run(&self.entries, viewers, &mut nodes)?;
+        Scope::new(variables).run(&self.entries, &mut nodes)?;
         if nodes.len() > PLACES {
             let count = nodes.len();
             return Err(PlanError(format!(
@@ -137,74 +129,72 @@ impl LaunchFile {
     }
 }
 
-/// The actions of a file, with those of the files that it includes in the place of these.
-fn read(text: &str, folder: &Path, level: usize, has_others: &mut bool) -> Result<Vec<Placed>, PlanError> {
+/// Returns the actions of a file, with the actions of the files that it includes.
+fn read(text: &str, folder: &Path, level: usize) -> Result<Vec<Placed>, PlanError> {
     let here = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
-    let whole = text.replace("$(dirname)", &here.to_string_lossy());
-    *has_others |= whole != text;
-    let format = |e| PlanError(format!("not a launch file that can be run here: {e}"));
+    let whole = text.replace(DIRNAME, &here.to_string_lossy());
+    let format = |e: serde_saphyr::Error| {
+        let fault = e.to_string();
+        let is_of_ros2 = |word: &str| {
+            ["field", "variant"].iter().any(|kind| fault.contains(&format!("unknown {kind} `{word}`")))
+        };
+        // The error quotes lines of the file: the advice has a line of its own.
+        let advice = if fault.contains("expected sequence") {
+            format!("\na group is a list of actions, each with its own condition; {ADVICE}")
+        } else if OF_ROS2.iter().any(|word| is_of_ros2(word)) {
+            format!("\n{ADVICE}")
+        } else {
+            String::new()
+        };
+        PlanError(format!("not a launch file that can be run here: {fault}{advice}"))
+    };
     // `y` and `on` are texts, as in ROS 2's own reader.
     let options = serde_saphyr::options! { strict_booleans: true };
-    let file: File = serde_saphyr::from_str_with_options(&whole, options).map_err(format)?;
-    included(file.launch, level, has_others)
+    let mut file: File = serde_saphyr::from_str_with_options(&whole, options).map_err(format)?;
+    include(&mut file.launch, level)?;
+    Ok(file.launch)
 }
 
-fn included(entries: Vec<Placed>, level: usize, has_others: &mut bool) -> Result<Vec<Placed>, PlanError> {
-    let one = |Placed { entry, line }| {
-        let entry = match entry {
-            Entry::Group(group) => {
-                let children = included(group.children, level, has_others)?;
-                Entry::Group(Group { children, ..group })
+/// Reads the files that these actions include, unless they are there.
+fn include(entries: &mut [Placed], level: usize) -> Result<(), PlanError> {
+    for Placed { entry, line } in entries {
+        match entry {
+            Entry::Group(children) => include(children, level)?,
+            Entry::Include(i) if i.children.is_none() => {
+                let values =
+                    i.arg.drain(..).map(|setting| Placed { entry: Entry::Let(setting), line: *line });
+                let read = of_file(&i.file, level).map_err(|fault| fault.in_line(*line))?;
+                i.children = Some(values.chain(read).collect());
             }
-            Entry::Include(include) => {
-                *has_others = true;
-                of_file(include, line, has_others, level).map_err(|fault| fault.in_line(line))?
-            }
-            other => other,
-        };
-        Ok(Placed { entry, line })
-    };
-    entries.into_iter().map(one).collect()
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
-/// The actions of an included file, after values for its arguments.
-fn of_file(include: Include, line: u64, has_others: &mut bool, level: usize) -> Result<Entry, PlanError> {
-    let Include { file, arg, if_, unless } = include;
-    let fault = |reason: String| PlanError(reason).included(&file);
+/// Returns the actions of an included file.
+fn of_file(file: &str, level: usize) -> Result<Vec<Placed>, PlanError> {
+    let fault = |reason: String| PlanError(reason).included(file);
     if level >= DEEPEST {
         return Err(fault(TOO_DEEP.to_owned()));
     }
-    let built_in =
-        file.strip_prefix("$(find-pkg-share grainlab)/launch/").and_then(|f| f.strip_suffix(".launch.yaml"));
-    let known = BUILT_IN.iter().find(|(name, _)| Some(*name) == built_in);
-    if known.is_none() && (file.contains("$(") || !(file.ends_with(".yaml") || file.ends_with(".yml"))) {
-        return Err(fault(
-            "a YAML file by its path, which may begin with $(dirname), or one of grainlab is expected"
-                .to_owned(),
-        ));
+    if file.contains("$(") || !(file.ends_with(".yaml") || file.ends_with(".yml")) {
+        let expected = "a YAML file by its path, which may begin with $(dirname), is expected";
+        return Err(fault(format!("{expected}. {ADVICE}")));
     }
-    let path = Path::new(&file);
-    let text = known.map(|(_, text)| Ok((*text).to_owned()));
-    let text = text.unwrap_or_else(|| std::fs::read_to_string(path)).map_err(|e| fault(e.to_string()))?;
-    let entries = read(&text, path.parent().unwrap_or(Path::new(".")), level + 1, has_others)
-        .map_err(|e| if e.0.ends_with(TOO_DEEP) { e } else { fault(e.0) })?;
-    let values = arg.into_iter().map(|setting| Placed { entry: Entry::Let(setting), line });
-    let children = values.chain(entries).collect();
-    Ok(Entry::Group(Group {
-        children,
-        file: Some(file),
-        scoped: Some(Text("false".to_owned())),
-        if_,
-        unless,
-    }))
+    let path = Path::new(file);
+    let text = input::text(path, input::SETTINGS).map_err(|e| fault(e.to_string()))?;
+    read(&text, path.parent().unwrap_or(Path::new(".")), level + 1)
+        .map_err(|e| if e.0.ends_with(TOO_DEEP) { e } else { fault(e.0) })
 }
 
-/// Every declared argument with its default.
+/// Adds every declared argument with its default.
 fn declared(entries: &[Placed], found: &mut Vec<(String, Option<String>)>) {
     for placed in entries {
         match &placed.entry {
             Entry::Arg(a) => found.push((a.name.clone(), a.default.as_ref().map(|d| d.0.clone()))),
-            Entry::Group(group) => declared(&group.children, found),
+            Entry::Group(children) => declared(children, found),
+            Entry::Include(include) => declared(include.children.as_deref().unwrap_or_default(), found),
             _ => {}
         }
     }

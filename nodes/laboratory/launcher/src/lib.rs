@@ -39,7 +39,7 @@ mod without_run;
 pub use child::Run;
 pub use followed::{Outline, Received};
 pub use launch_file::{BUILT_IN, LaunchFile};
-pub use nodes::{NodeKind, Viewer};
+pub use nodes::NodeKind;
 pub use one_process::{check_one_process, run_in_one_process};
 pub use plan::NodePlan;
 pub use recorded_speeds::RecordedSpeeds;

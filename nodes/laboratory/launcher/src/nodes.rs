@@ -1,7 +1,6 @@
 //! Every node: one variant each, and all differences between them outside their own crates.
 //!
-//! To add a node: its crate, a variant here with all matches on it, and the launch files that start it. Nodes for viewers are no
-//! part of the laboratory: the program that has them hands them over as [`Viewer`]s.
+//! To add a node: its crate, a variant here with all matches on it, and the launch files that start it.
 
 use crate::last_packing;
 use clap::ValueEnum;
@@ -13,12 +12,17 @@ use grainlab_msgs::{Topic, topics};
 use grainlab_node_kit::{
     Bus, Names, Node, NodeError, NodeSpec, ParameterSpec, Parameters, RosArgs, Scope, use_sim_time,
 };
+use grainlab_packing_pictures::PackingPictures;
 use grainlab_recorder::{self as recorder, Recorder, ResultSlot};
 use grainlab_recordings::{input, scenes};
 use grainlab_servo_controller::ServoController;
 use std::fmt;
 use std::ops::RangeInclusive;
 use std::path::Path;
+
+/// Advice for the name of a node of earlier versions.
+const FOXGLOVE: &str = "no node \"foxglove_bridge\" any more: open a recording in Foxglove, or run ROS 2's bridge \
+                        (ros2 launch foxglove_bridge foxglove_bridge_launch.xml) and `grainlab run packing_pictures`";
 
 /// A node of the laboratory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -35,50 +39,26 @@ pub enum NodeKind {
     EmtInversion,
     /// Records every message.
     Recorder,
-    /// Shows a run, and is no part of it.
-    #[value(skip)]
-    Viewer(&'static Viewer),
+    /// Draws packings for viewers.
+    PackingPictures,
 }
-
-/// Makes a node on a bus from its parameters.
-type BuildNode = fn(&mut dyn Bus, &Parameters) -> Result<Box<dyn Node>, NodeError>;
-
-/// A node for viewers.
-#[derive(Debug)]
-pub struct Viewer {
-    /// Name, which no other node has.
-    pub name: &'static str,
-    /// Description in one line.
-    pub summary: &'static str,
-    /// Parameters of the node.
-    pub parameters: fn() -> Vec<ParameterSpec>,
-    /// The recorded topics that it reads; `None` if it finds topics of any name by itself.
-    pub topics: Option<&'static [Topic]>,
-    /// Creates it on its bus.
-    pub build: BuildNode,
-}
-
-impl PartialEq for Viewer {
-    fn eq(&self, other: &Self) -> bool {
-        self.name == other.name
-    }
-}
-
-impl Eq for Viewer {}
 
 impl NodeKind {
     /// Every node, in the order of the help.
-    pub fn all(viewers: &'static [Viewer]) -> impl Iterator<Item = Self> {
-        Self::value_variants().iter().copied().chain(viewers.iter().map(Self::Viewer))
+    pub fn all() -> impl Iterator<Item = Self> {
+        Self::value_variants().iter().copied()
     }
 
     /// The node with this name.
     ///
     /// # Errors
     /// If there is none; the text lists all.
-    pub fn named(name: &str, viewers: &'static [Viewer]) -> Result<Self, String> {
-        let unknown = || format!("no node {name:?}; there are: {}", Self::names(viewers));
-        Self::all(viewers).find(|kind| kind.name() == name).ok_or_else(unknown)
+    pub fn named(name: &str) -> Result<Self, String> {
+        let unknown = || match name {
+            "foxglove_bridge" => FOXGLOVE.to_owned(),
+            _ => format!("no node {name:?}; there are: {}", Self::names()),
+        };
+        Self::all().find(|kind| kind.name() == name).ok_or_else(unknown)
     }
 
     /// Name of the node, unless `__node` sets another one.
@@ -90,13 +70,13 @@ impl NodeKind {
             Self::AcousticProbe => "acoustic_probe",
             Self::EmtInversion => "emt_inversion",
             Self::Recorder => "recorder",
-            Self::Viewer(viewer) => viewer.name,
+            Self::PackingPictures => "packing_pictures",
         }
     }
 
     /// The names of all, comma separated.
-    pub fn names(viewers: &'static [Viewer]) -> String {
-        Self::all(viewers).map(Self::name).collect::<Vec<_>>().join(", ")
+    pub fn names() -> String {
+        Self::all().map(Self::name).collect::<Vec<_>>().join(", ")
     }
 
     /// Description in one line.
@@ -108,7 +88,9 @@ impl NodeKind {
             Self::AcousticProbe => "measures wave speeds of packings",
             Self::EmtInversion => "infers the microstructure from moduli and wave speeds",
             Self::Recorder => "records every topic to MCAP",
-            Self::Viewer(viewer) => viewer.summary,
+            Self::PackingPictures => {
+                "publishes packings as points and markers for viewers, while somebody subscribes"
+            }
         }
     }
 
@@ -121,7 +103,7 @@ impl NodeKind {
             Self::AcousticProbe => grainlab_acoustic_probe::parameters(),
             Self::EmtInversion => grainlab_emt_inversion::parameters(),
             Self::Recorder => recorder::parameters(),
-            Self::Viewer(viewer) => (viewer.parameters)(),
+            Self::PackingPictures => Vec::new(),
         }
     }
 
@@ -159,9 +141,6 @@ impl NodeKind {
 
     /// Refuses a remap of a topic that does not exist, which would have no effect.
     pub fn check_remaps(self, names: &Names) -> Result<(), String> {
-        if matches!(self, Self::Viewer(Viewer { topics: None, .. })) {
-            return Ok(());
-        }
         let known = || topics::TOPICS.iter().chain(topics::PICTURES).map(|topic| topic.name);
         names.unknown_remap(known()).map_or(Ok(()), |from| {
             let known = known().collect::<Vec<_>>().join(", ");
@@ -189,7 +168,7 @@ impl NodeKind {
                 &[topics::PACKING_REPORT, topics::MODULI, topics::WAVE_SPEEDS, topics::MICROSTRUCTURE]
             }
             Self::Recorder => topics::TOPICS,
-            Self::Viewer(viewer) => viewer.topics.unwrap_or_default(),
+            Self::PackingPictures => &[topics::PACKING],
         };
         let of_every_node = [topics::DIAGNOSTICS, topics::ROSOUT].into_iter().filter(|t| !own.contains(t));
         own.iter().copied().filter(Topic::is_recorded).chain(of_every_node).collect()
@@ -245,7 +224,7 @@ impl NodeKind {
                 let settings = recorder::Settings::of(parameters)?;
                 Box::new(Recorder::new(bus, &settings, recorded.clone())?)
             }
-            Self::Viewer(viewer) => (viewer.build)(bus, parameters)?,
+            Self::PackingPictures => Box::new(PackingPictures::new(bus)?),
         })
     }
 }
@@ -295,17 +274,22 @@ mod tests {
 
     #[test]
     fn a_name_means_its_node_and_an_unknown_one_lists_all() {
-        for kind in NodeKind::all(&[]) {
-            assert_eq!(NodeKind::named(kind.name(), &[]), Ok(kind));
+        for kind in NodeKind::all() {
+            assert_eq!(NodeKind::named(kind.name()), Ok(kind));
         }
-        let error = NodeKind::named("dem_simulater", &[]).unwrap_err();
+        let error = NodeKind::named("dem_simulater").unwrap_err();
         assert!(error.starts_with("no node \"dem_simulater\"; there are: dem_simulator, servo"), "{error}");
+        let removed = NodeKind::named("foxglove_bridge").unwrap_err();
+        assert!(
+            removed.contains("open a recording in Foxglove") && removed.contains("ros2 launch"),
+            "{removed}"
+        );
     }
 
     #[test]
     fn a_node_uses_no_topic_beside_those_whose_names_are_compared_before_the_start() {
         let folder = tempfile::tempdir().unwrap();
-        for kind in NodeKind::all(&[]) {
+        for kind in NodeKind::all() {
             let output = format!("output:={}", folder.path().join("run").display());
             let given = ["--ros-args", "-p", &output].map(str::to_owned);
             let given = if kind == NodeKind::Recorder { given.as_slice() } else { &[] };
@@ -314,7 +298,9 @@ mod tests {
             let _node = kind.build(&mut bus, &parameters, &ResultSlot::default()).unwrap();
             let used = bus.published().into_iter().map(|p| p.topic);
             let used = used.chain(bus.received().into_iter().map(|r| r.topic));
-            for name in used.filter(|name| Topic::by_name(name).is_some_and(|t| t.is_recorded())) {
+            // Nodes of a run read no pictures.
+            let is_of_run = |t: &Topic| t.is_recorded() && !topics::PICTURES.contains(t);
+            for name in used.filter(|name| Topic::by_name(name).is_some_and(is_of_run)) {
                 assert!(kind.topics().iter().any(|t| t.absolute_name() == name), "{kind}: {name}");
             }
         }
@@ -322,7 +308,7 @@ mod tests {
 
     #[test]
     fn who_measures_is_who_writes_the_topic() {
-        for (kind, topic) in NodeKind::all(&[]).filter_map(|kind| Some((kind, kind.measures()?))) {
+        for (kind, topic) in NodeKind::all().filter_map(|kind| Some((kind, kind.measures()?))) {
             assert_eq!(kind.name(), topic.writer);
         }
     }

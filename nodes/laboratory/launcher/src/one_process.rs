@@ -11,7 +11,7 @@ use super::plan::{NodePlan, PlanError};
 use super::recorded_speeds::RecordedSpeeds;
 use super::supervisor::{BEGINS_WITHIN, POLL_PERIOD, Supervised};
 use super::time_limit::TimeLimit;
-use super::watch::{LAUNCHER, RunSubscriptions};
+use super::watch::{Event, LAUNCHER, RunSubscriptions};
 use crate::agreement::names_of_run;
 use crate::nodes::NodeKind;
 use grainlab_console::{Failure, Signals, worse};
@@ -30,7 +30,7 @@ pub fn check_one_process(plans: &[NodePlan]) -> Result<(), PlanError> {
     if let Some(plan) = plans.iter().find(|p| p.node.is_none()) {
         return Err(PlanError::of(&plan.name, reason));
     }
-    let shared = "env and set_env have no effect in one process, whose nodes share one environment: launch without --one-process";
+    let shared = "set_env has no effect in one process, whose nodes share one environment: launch without --one-process";
     plans.iter().find(|p| !p.environment.is_empty()).map_or(Ok(()), |p| Err(PlanError::of(&p.name, shared)))
 }
 
@@ -72,6 +72,7 @@ pub fn run_in_one_process(
     let subscriptions = RunSubscriptions::new(&mut bus, simulator).map_err(Failure::failed)?;
     let (components, logs) = (Vec::new(), directory.join("logs"));
     let mut this = OneProcess { hub, bus, subscriptions, signals, followed, children, components, logs };
+    this.followed.take(Event::SimulatorJoined);
     let exit = match this.build(run)? {
         None => this.attend()?,
         Some(exit) => exit,
@@ -90,7 +91,7 @@ impl OneProcess {
             let Some((node, names, parameters)) = plan.parsed().map_err(Failure::usage)? else { continue };
             let (ros, _) = RosArgs::parse(&plan.arguments[2..]).map_err(Failure::usage)?;
             let name = names.fully_qualified();
-            let logger = Logger::of_node(&name, &ros, open_log(logs, &plan.name).map_err(Failure::at(logs))?);
+            let logger = Logger::of_node(&name, &ros, open_log(logs, &plan.name).map_err(Failure::failed)?);
             let bus = self.hub.bus_as(names, Identity::member_of(run, child.member));
             let slot = ResultSlot::default();
             child.last_pid = std::process::id();

@@ -8,7 +8,6 @@ use grainlab_msgs::{Topic, topics};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-/// The source of data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
     /// A node of grainlab.
@@ -31,7 +30,6 @@ impl fmt::Display for Source {
 struct Kind {
     /// Topic of the data: the `source` of a microstructure.
     topic: &'static str,
-    /// Source of the data.
     source: Source,
     /// Number of sets of data about the packing of each step.
     measured: BTreeMap<u64, usize>,
@@ -109,7 +107,7 @@ impl PendingResults {
     pub(crate) fn of(plans: &[NodePlan]) -> Self {
         let has = |node: NodeKind| plans.iter().any(|p| p.is(node));
         let kind = |node: NodeKind| Some(Kind::new(node.measures()?.name, Source::Node(node)));
-        let mut kinds: Vec<Kind> = NodeKind::all(&[]).filter(|node| has(*node)).filter_map(kind).collect();
+        let mut kinds: Vec<Kind> = NodeKind::all().filter(|node| has(*node)).filter_map(kind).collect();
         let instruments = plans.iter().any(|p| p.node.is_none());
         let simulator = plans.iter().find(|p| p.is(NodeKind::DemSimulator)).filter(|_| instruments);
         if let Some(Ok(Some((.., parameters)))) = simulator.map(NodePlan::parsed) {

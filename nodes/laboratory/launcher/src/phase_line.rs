@@ -37,7 +37,6 @@ impl PhaseName {
 /// Knowledge of the rest of a phase.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Rest {
-    /// Nothing is known yet.
     Unknown,
     /// Share that is done, and the time left, s, once the pace is known.
     Share(f64, Option<f64>),

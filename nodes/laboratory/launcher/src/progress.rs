@@ -37,7 +37,6 @@ struct Phase {
 }
 
 impl Progress {
-    /// For a path with this many phases.
     pub(crate) fn new(phases: usize) -> Self {
         let now = Instant::now();
         let activity = "starting the processes";

@@ -6,11 +6,13 @@ use grainlab_msgs::topics::PACKING_REPORT;
 const WAITS: &str = "waiting for";
 
 /// Condition that a run that has not begun waits for, as far as its simulator has said it; `None` once it computes its first step.
-pub(crate) fn awaited(simulator: Option<&str>, first_step: Option<u64>) -> Option<&str> {
+/// `joined`: the simulator was discovered.
+pub(crate) fn awaited(simulator: Option<&str>, joined: bool, first_step: Option<u64>) -> Option<&str> {
     match (simulator, first_step) {
         (Some(says), _) if says.starts_with(WAITS) => Some(says),
         (Some(_), None) => Some("the simulator has published no state"),
-        (None, None) => Some("the simulator starts, or places its grains"),
+        (None, None) if joined => Some("the simulator starts, or places its grains"),
+        (None, None) => Some("the simulator has not been discovered"),
         (_, Some(_)) => None,
     }
 }
@@ -39,6 +41,15 @@ pub(crate) fn inverted(source: &str, step: u64, of_start: bool, nothing: Option<
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_simulator_that_was_not_discovered_is_not_said_to_place_grains() {
+        assert_eq!(awaited(None, false, None), Some("the simulator has not been discovered"));
+        assert_eq!(awaited(None, true, None), Some("the simulator starts, or places its grains"));
+        let waits = "waiting for 2 readers of packing; there are 1";
+        assert_eq!(awaited(Some(waits), true, None), Some(waits));
+        assert_eq!(awaited(None, true, Some(1)), None);
+    }
 
     #[test]
     fn only_what_has_an_estimate_is_said_to_be_inverted() {

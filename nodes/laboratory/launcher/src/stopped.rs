@@ -59,8 +59,11 @@ impl Stopped {
 
 /// The state of a process is the third field of `/proc/PID/stat`: T where a signal stopped it, t where a debugger did.
 fn is_stopped(pid: u32) -> bool {
-    let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).unwrap_or_default();
-    let state = stat.rsplit_once(')').and_then(|(_, behind)| behind.trim_start().chars().next());
+    // The second field, the name, may hold any bytes.
+    let stat = std::fs::read(format!("/proc/{pid}/stat")).unwrap_or_default();
+    let state = String::from_utf8_lossy(&stat)
+        .rsplit_once(')')
+        .and_then(|(_, behind)| behind.trim_start().chars().next());
     matches!(state, Some('T' | 't'))
 }
 
@@ -84,5 +87,22 @@ mod tests {
         assert!(!is_stopped(pid));
         child.kill().unwrap();
         child.wait().unwrap();
+    }
+
+    #[test]
+    fn a_process_is_found_to_be_stopped_whatever_bytes_its_name_has() {
+        use std::io::{BufRead, BufReader};
+        let script = r"printf 'a\377)' > /proc/$$/comm; echo named; read end";
+        let mut shell = std::process::Command::new("sh");
+        let pipes = shell.args(["-c", script]).stdin(std::process::Stdio::piped());
+        let mut child = pipes.stdout(std::process::Stdio::piped()).spawn().unwrap();
+        BufReader::new(child.stdout.take().unwrap()).read_line(&mut String::new()).unwrap();
+        // SAFETY: kill takes two integers. The child was not waited for, so the id is its own.
+        assert_eq!(unsafe { libc::kill(child.id() as i32, libc::SIGSTOP) }, 0);
+        std::thread::sleep(std::time::Duration::from_millis(100));
+        let found = is_stopped(child.id());
+        child.kill().unwrap();
+        child.wait().unwrap();
+        assert!(found);
     }
 }

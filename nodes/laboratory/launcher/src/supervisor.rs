@@ -195,6 +195,10 @@ impl Supervisor {
                     if !self.followed.begun && beginning.is_over(suspended) {
                         beginning = TimeLimit::new(BEGINS_WITHIN);
                         self.followed.say_what_is_waited_for();
+                        // A program that failed does not come back.
+                        if let Some(exit) = self.failed_before_the_run() {
+                            return exit;
+                        }
                     }
                     continue;
                 }
@@ -206,6 +210,17 @@ impl Supervisor {
                 Verdict::Pending(late) => deadline = late.or(deadline),
             }
         }
+    }
+
+    /// Complains about a program that failed and is not restarted, in a run that has not begun.
+    fn failed_before_the_run(&mut self) -> Option<Exit> {
+        let failed = |c: &&Child| c.plan.node.is_none() && c.pid.is_none() && c.code != Some(0);
+        let Child { plan, code, .. } = self.children.iter().find(failed)?;
+        let how = code.map_or_else(|| "by a signal".to_owned(), |code| format!("with exit code {code}"));
+        let name = &plan.name;
+        let reason = format!("{name} ended {how} before the run began: the run ends. See logs/{name}.log");
+        self.followed.complain(reason);
+        Some(Exit::Failure)
     }
 
     /// Ends a complete run, but waits until a stopped process continues and has had time to catch up: its writers keep

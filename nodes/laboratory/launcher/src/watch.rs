@@ -75,6 +75,10 @@ pub(crate) enum Event {
     Goodbye(u32),
     /// The bus is open: messages are received from now on.
     Open,
+    /// The simulator was discovered.
+    SimulatorJoined,
+    /// The DDS domain is full, in words.
+    Crowded(String),
     /// A process outside the run publishes on its topics.
     Stranger(String),
     /// The watch itself failed.
@@ -84,7 +88,6 @@ pub(crate) enum Event {
 /// Progress of a phase, as the simulator reports it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct PhaseReport {
-    /// Name of the phase.
     pub(crate) name: String,
     /// Share that is done, 0 to 1, if its end is known beforehand.
     pub(crate) share: Option<f64>,
@@ -153,7 +156,6 @@ impl Drop for Watch {
     }
 }
 
-/// Subscriptions to the run's messages.
 pub(crate) struct RunSubscriptions {
     states: Subscription<RunState>,
     simulator: Option<u8>,
@@ -254,13 +256,21 @@ fn watch(
     };
     let mut subscriptions = RunSubscriptions::new(bus, simulator).map_err(|e| e.to_string())?;
     send(Event::Open);
-    let mut named = BTreeSet::new();
+    let (mut named, mut is_joined, mut is_crowded) = (BTreeSet::new(), false, false);
     let mut next_look = bus.now() + DISCOVERY_TIME;
     while !stop.load(Ordering::Relaxed) {
         subscriptions.receive(bus, send).map_err(|e| e.to_string())?;
         if bus.now() >= next_look {
             next_look = bus.now() + DISCOVERY_TIME;
             watchdog::check().map_err(|e| e.to_string())?;
+            if !is_joined && has_joined(bus, simulator) {
+                is_joined = true;
+                send(Event::SimulatorJoined);
+            }
+            if !is_crowded && let Some(sentence) = bus.crowding() {
+                is_crowded = true;
+                send(Event::Crowded(sentence));
+            }
             let strange =
                 OF_THE_RUN.iter().flat_map(|t| bus.strange_writers(t).into_iter().map(|w| (t.name, w)));
             for (topic, writer) in strange {
@@ -273,6 +283,12 @@ fn watch(
         bus.wait(POLL_PERIOD);
     }
     Ok(())
+}
+
+/// True if the simulator, the process with this member number, was discovered; without one, if any process publishes the state.
+fn has_joined(bus: &DdsBus, simulator: Option<u8>) -> bool {
+    let states = bus.foreign_writers(&topics::RUN_STATE);
+    states.iter().any(|writer| simulator.is_none_or(|member| member_of(&writer.participant()) == member))
 }
 
 /// Why no estimate of a microstructure is recommended; `None` if one is.

@@ -6,7 +6,6 @@
 //! - [`strangers`]: processes on the bus that are not part of the run
 //! - [`OtherTopics`]: topics of other programs, found on the bus
 //! - [`Recorder`]: the node; [`ResultSlot`]: the finished recording
-//! - [`SnapshotSettings`]: the last seconds in memory, written when asked to
 //! - [`play`]: publishes the messages of a recording again
 //! - [`tallies`]: losses, and the table of counts
 
@@ -18,11 +17,9 @@ mod node;
 pub mod play;
 pub mod repeats;
 mod settings;
-mod snapshot;
 pub mod strangers;
 pub mod tallies;
 
 pub use discovery::OtherTopics;
 pub use node::{Recorder, ResultSlot};
 pub use settings::{Settings, contract_topics, parameters, set_parameter};
-pub use snapshot::SnapshotSettings;

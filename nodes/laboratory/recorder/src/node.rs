@@ -1,16 +1,17 @@
 //! Node that records.
 
+mod account;
+
 use crate::Settings;
 use crate::binding::{Binding, Outside};
 use crate::discovery::{Finder, FoundTopic};
 use crate::disputes::Disputes;
 use crate::known_processes::KnownProcesses;
 use crate::repeats::{Novelty, Repeats};
-use crate::snapshot::{Kept, Snapshot};
-use crate::strangers::{LeftOut, grouped};
+use crate::strangers::LeftOut;
 use crate::tallies::losses;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
-use grainlab_msgs::{Guid, Topic, from_cdr, topics};
+use grainlab_msgs::{Guid, Qos, Topic, from_cdr, topics};
 use grainlab_node_kit::{
     Bus, Demand, Exit, Health, Next, Node, NodeError, Published, Report, Sample, Source, Stranger,
 };
@@ -19,7 +20,7 @@ use grainlab_recordings::{Finished, Incoming, Outcome, Recording, RunWriter, Top
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::rc::Rc;
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, Instant};
 
 /// Maximum number of samples queued while the disk is slow: some seconds of the fastest lockstep. RustDDS
 /// keeps as many of each topic, also after they were taken, so that a topic with few or long messages gets
@@ -32,6 +33,10 @@ fn backlog(topic: &Topic) -> u32 {
         _ => 1_000,
     }
 }
+
+/// Maximum number of small samples of a topic, whatever the depth, that RustDDS holds until they are taken: a burst is written
+/// by its publisher faster than to a file.
+const BURST: u32 = 8192;
 
 /// Period of the writer's `tick`.
 const TICK: Duration = Duration::from_millis(100);
@@ -80,12 +85,12 @@ pub struct Recorder {
     disputes: Disputes,
     /// The writer of each result.
     authors: Authors,
+    /// The processes that earlier recorders of the run left out.
+    noted_strangers: Vec<StrangerView>,
     /// Time of the last step, since the bus was opened.
     stepped: Option<Duration>,
     /// The recorder had no step for [`STALLED`]. It may have missed the last report of a process that left meanwhile.
     stalled: bool,
-    /// Messages that are written only when asked to.
-    snapshot: Option<Snapshot>,
     /// Finds topics outside the contract.
     finder: Option<Finder>,
     /// Those topics, where they are not recorded.
@@ -99,7 +104,7 @@ impl Recorder {
         let mut channels = Vec::new();
         let mut specs = Vec::new();
         for topic in &settings.topics {
-            let demand = Demand::reliable(backlog(topic));
+            let demand = Demand::reliable(backlog(topic)).with_burst(BURST);
             let asked = settings.others.as_ref().map_or(*topic, |others| others.requested(topic));
             let name = bus.resolve(&asked)?;
             let source = Source::open(bus, &asked, demand)?;
@@ -112,18 +117,20 @@ impl Recorder {
         let name =
             directory.file_name().map_or_else(|| "recording".into(), |n| n.to_string_lossy().into_owned());
         let mut repeats = settings.whole_run.then(Repeats::default);
-        let mut authors = Authors::default();
+        let (mut authors, mut noted_strangers) = (Authors::default(), Vec::new());
         let mut disputes = Disputes::new(settings.scene.as_ref().map(|s| s.scene.fingerprint));
         let before = if settings.append { Recording::open(&directory).ok() } else { None };
         if let Some(recording) = &before {
             authors = strangers::authors(recording);
             disputes.lines = strangers::noted_disputes(recording);
+            noted_strangers = strangers::strangers(recording);
             if let Some(repeats) = &mut repeats {
                 repeats.remember(recording).map_err(|e| failed(&e))?;
             }
         }
-        let begin = if before.is_some() { RunWriter::append } else { RunWriter::create };
-        let mut writer = begin(&directory, &name, &specs, settings.writer.clone()).map_err(|e| failed(&e))?;
+        let begin = if settings.append { RunWriter::append } else { RunWriter::create };
+        let begun = begin(&directory, &name, &specs, settings.writer.clone());
+        let mut writer = begun.map_err(|e| NodeError::new(e.exit, e.to_string()))?;
         if let Some(scene) = &settings.scene {
             writer.attach("scene.toml", "application/toml", scene.text.as_bytes()).map_err(|e| failed(&e))?;
             writer.set_metadata("scene", &scene.scene.name);
@@ -157,11 +164,11 @@ impl Recorder {
             contradictions: 0,
             disputes,
             authors,
+            noted_strangers,
             stepped: None,
             stalled: false,
             finder: settings.others.clone().map(Finder::new),
             left_out: LeftOut::default(),
-            snapshot: settings.snapshot.clone().map(Snapshot::new).transpose().map_err(|e| failed(&e))?,
         })
     }
 
@@ -169,7 +176,8 @@ impl Recorder {
     fn find(&mut self, bus: &mut dyn Bus) -> Result<(), NodeError> {
         let (Some(finder), Some(writer)) = (&mut self.finder, &mut self.writer) else { return Ok(()) };
         for FoundTopic { topic, spec } in finder.look(bus, &self.names) {
-            let demand = Demand { reliable: topic.qos.reliable, depth: topic.qos.depth };
+            let Qos { reliable, depth, .. } = topic.qos;
+            let demand = Demand { reliable, ..Demand::best_effort(depth).with_burst(BURST) };
             let source = Source::open(bus, &topic, demand)?;
             writer.add_topic(&spec).map_err(|e| lost(&e))?;
             writer.ledger_mut().count_from_first(&spec.name);
@@ -223,11 +231,6 @@ impl Recorder {
                         _ => {}
                     }
                 }
-                if let Some(snapshot) = &mut self.snapshot {
-                    let (topic, latched) = (channel.name.clone(), channel.topic.qos.transient_local);
-                    snapshot.keep(Kept { topic, sample, latched });
-                    continue;
-                }
                 let incoming = incoming(&sample);
                 let novelty = self.repeats.as_mut().map_or(Novelty::New, |repeats| {
                     let there = |writer: &Guid| bus.foreign_writers(topic).contains(writer);
@@ -264,21 +267,8 @@ impl Recorder {
                 }
             }
         }
-        if let Some(snapshot) = &mut self.snapshot {
-            self.recorded += keep_last(snapshot, writer)?;
-        }
         writer.tick(Instant::now()).map_err(|e| lost(&e))?;
         Ok(any)
-    }
-
-    /// The processes whose messages were left out.
-    fn strangers(&self, bus: &dyn Bus) -> Vec<StrangerView> {
-        let of_bus = bus.strangers();
-        let of_binding = self.binding.iter().flat_map(|b| b.ignored()).map(|(participant, topics)| {
-            let ignored = topics.iter().map(|(topic, count)| ((*topic).to_owned(), *count)).collect();
-            Stranger { ignored, ..bus.describe(Guid::of_participant(*participant)) }
-        });
-        grouped(of_bus.into_iter().chain(of_binding))
     }
 
     /// Waits for messages known to be in transit, then for a short pause if any process may still publish.
@@ -312,26 +302,6 @@ fn incoming(sample: &Sample) -> Incoming<'_> {
         receive_time: sample.info.received,
         payload: &sample.body,
     }
-}
-
-/// Writes the messages of a snapshot if it was asked for; counts those that are too old as left out. Returns the number of
-/// messages written.
-fn keep_last(snapshot: &mut Snapshot, writer: &mut RunWriter) -> Result<u64, NodeError> {
-    let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |d| d.as_nanos() as u64);
-    snapshot.expire(now, |kept| leave_out(writer, &kept));
-    let Some(messages) = snapshot.taken() else { return Ok(0) };
-    for kept in &messages {
-        writer.write(&kept.topic, &incoming(&kept.sample)).map_err(|e| lost(&e))?;
-    }
-    // With this time the writer counts all queued messages as old enough.
-    writer.tick(Instant::now() + OLD_ENOUGH).map_err(|e| lost(&e))?;
-    log::info!("snapshot: {} messages written to {}", messages.len(), writer.file().display());
-    Ok(messages.len() as u64)
-}
-
-fn leave_out(writer: &mut RunWriter, kept: &Kept) {
-    let info = &kept.sample.info;
-    writer.ledger_mut().leave_out(&kept.topic, info.writer, info.sequence);
 }
 
 /// Logs a process whose messages are left out, once for each kind of message.
@@ -390,8 +360,11 @@ impl Node for Recorder {
         if self.finder.is_none() && last.as_secs() != now.as_secs() {
             self.left_out.look(bus, &self.names);
         }
-        self.find(bus)?;
-        self.take_all(bus)?;
+        if let Err(error) = self.find(bus).and_then(|()| self.take_all(bus)) {
+            // The writer completes the file if it still can.
+            self.describe_processes(bus)?;
+            return Err(error);
+        }
         Ok(Next::Wait(TICK))
     }
 
@@ -405,26 +378,12 @@ impl Node for Recorder {
 
     /// Finishes the file. What this process publishes after that is not recorded.
     fn on_shutdown(&mut self, bus: &mut dyn Bus) -> Result<Exit, NodeError> {
-        self.last_call(bus)?;
+        self.note_announcements(bus);
+        let called = self.last_call(bus);
         let missing = self.known_processes.missing(&bus.foreign_writers(&topics::DIAGNOSTICS));
-        let strangers = self.strangers(bus);
-        let Some(mut writer) = self.writer.take() else { return Ok(Exit::Done) };
-        for kept in self.snapshot.iter_mut().flat_map(Snapshot::rest) {
-            leave_out(&mut writer, &kept);
-        }
-        let express = |value: serde_json::Result<String>| value.map_err(|e| lost(&e));
-        writer.set_metadata(strangers::STRANGERS, &express(serde_json::to_string(&strangers))?);
-        if let Some(sentence) = self.left_out.sentence() {
-            log::info!("{sentence}");
-            writer.set_metadata(strangers::LEFT_OUT, &sentence);
-        }
-        if !self.disputes.lines.is_empty() {
-            writer.set_metadata(strangers::DISPUTES, &express(serde_json::to_string(&self.disputes.lines))?);
-        }
-        writer.set_metadata(strangers::AUTHORS, &express(serde_json::to_string(&self.authors))?);
-        if let Some(run) = self.binding.as_ref().and_then(Binding::run) {
-            writer.set_metadata("run", &Guid::of_participant(run).to_string()[..24]);
-        }
+        self.describe_processes(bus)?;
+        called?;
+        let Some(writer) = self.writer.take() else { return Ok(Exit::Done) };
         let finished = writer.finish().map_err(|e| lost(&e))?;
         let tallies = finished.ledger.tallies();
         let has_mixed_types = self.finder.as_ref().is_some_and(|f| f.report_missing(&self.names, &tallies));

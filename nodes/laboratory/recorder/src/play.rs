@@ -1,8 +1,10 @@
 //! `grainlab bag play`.
 
+mod delivery;
 mod keys;
 mod publisher;
 mod session;
+mod watch;
 
 use grainlab_console::Failure;
 use grainlab_msgs::topics;
@@ -10,7 +12,7 @@ use grainlab_node_kit::{Bus, Exit, tool_bus};
 use grainlab_recordings::{PlayOptions, Player, QosOverrides, Recording, StoredDefinition};
 use keys::Keys;
 use publisher::{TopicPublishers, offer, pause, wait_for_readers};
-use session::Session;
+use session::{Ended, Session};
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
@@ -24,7 +26,9 @@ Examples:
 
 Playback that starts in the middle begins with the last earlier message of every latched topic. A topic that a live node
 publishes is left out with a message: two writers would mix their messages. Any type is played, byte for byte, with the QoS
-that its publishers offered when it was recorded (reliable, volatile, depth 10 if they differed). A type of this program whose
+that its publishers offered when it was recorded (reliable, volatile, depth 10 if they differed). Whatever the depth, a reliable
+subscriber receives every message: the playback waits for its acknowledgements, and ends with exit 3 and the number of messages
+that were not acknowledged if it acknowledges none for 10 s. A type of this program whose
 definition in the recording differs is sent as that of this program, by the names of its fields, or left out (exit 3).
 
 Keys, if stdin is a terminal, or with --start-paused or --step: space pauses and continues, s or right sends the next message,
@@ -32,9 +36,8 @@ up and down change the rate by a tenth, q ends. Not from a terminal, an empty li
 
 /// Time to discover the publishers.
 const LOOK_AROUND: Duration = Duration::from_millis(700);
-/// Time limit for the last messages, and time for which this process stays afterwards: when a writer leaves,
-/// readers lose the samples that they have not taken.
-const FAREWELL: Duration = Duration::from_secs(5);
+/// Time for which this process stays after the last acknowledgement: when a writer leaves, readers lose the samples that they
+/// have not taken.
 const GRACE: Duration = Duration::from_millis(300);
 
 /// A topic and the name under which it is published.
@@ -210,22 +213,26 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         sent: 0,
         unread: 0,
         late: Duration::ZERO,
+        next_look: Duration::ZERO,
     };
-    let mut finished = true;
     let mut is_paused = args.start_paused || args.step;
-    loop {
+    let ended = loop {
         let mut player = Player::new(&recording, &options)?;
         if std::mem::take(&mut is_paused) {
             player.pause(session.bus.now());
         }
-        finished &= session.play(&mut player)?;
-        if !args.again || session.is_over(finished) {
-            break;
+        let ended = session.play(&mut player)?;
+        if !args.again || session.is_over(ended) {
+            break ended;
         }
-    }
+    };
     let (sent, unread, late) = (session.sent, session.unread, session.late);
     drop(session);
-    let acknowledged = bus.flush(FAREWELL);
+    let finished = match ended {
+        Ended::Signal => false,
+        Ended::Stuck => true,
+        Ended::Done | Ended::Key => delivery::wait(&mut bus, &mut publishers)?,
+    };
     std::thread::sleep(GRACE);
     let warnings = recording.warnings();
     warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
@@ -245,10 +252,11 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
             grainlab_console::count(unread, "message")
         );
     }
-    if !acknowledged {
-        grainlab_console::say!("grainlab: a reader has not acknowledged the last messages");
+    if ended == Ended::Stuck {
+        grainlab_console::say!("grainlab: the playback ended before the end of the recording");
     }
-    let whole = acknowledged && warnings.is_empty() && !refused && unread == 0;
+    let delivered = delivery::report(&publishers);
+    let whole = delivered && ended != Ended::Stuck && warnings.is_empty() && !refused && unread == 0;
     Ok(if whole { Exit::Done } else { Exit::DataLoss })
 }
 

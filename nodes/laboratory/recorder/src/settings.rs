@@ -1,7 +1,6 @@
 //! Settings of the recorder.
 
 use crate::discovery::OtherTopics;
-use crate::snapshot::SnapshotSettings;
 use grainlab_console::Failure;
 use grainlab_msgs::Topic;
 use grainlab_msgs::topics::TOPICS;
@@ -28,8 +27,6 @@ pub struct Settings {
     pub whole_run: bool,
     /// Size of files, compression.
     pub writer: WriterOptions,
-    /// Keeps the last messages in memory and writes them when asked to, instead of all messages.
-    pub snapshot: Option<SnapshotSettings>,
     /// Continues the existing recording, in its next file.
     pub append: bool,
 }
@@ -78,7 +75,6 @@ impl Settings {
             others: None,
             whole_run: true,
             writer: WriterOptions::default(),
-            snapshot: None,
             append: parameters.get("append"),
         })
     }

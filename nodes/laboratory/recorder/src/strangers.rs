@@ -15,15 +15,19 @@ pub fn name(stranger: &Stranger) -> String {
     }
 }
 
-/// For a recording and for `summary.json`: one entry for each process, and one for each other run.
-pub fn grouped(strangers: impl Iterator<Item = Stranger>) -> Vec<StrangerView> {
+/// For a recording and for `summary.json`: one entry for each process, and one for each other run. `noted` are the entries of earlier
+/// recorders of the run.
+pub fn grouped(noted: &[StrangerView], strangers: impl Iterator<Item = Stranger>) -> Vec<StrangerView> {
     let mut views: BTreeMap<String, StrangerView> = BTreeMap::new();
-    for stranger in strangers {
-        let run = stranger.run.map(|run| run.to_string());
-        let who = name(&stranger);
-        let new = StrangerView { who: who.clone(), run, ignored: BTreeMap::new() };
-        let view = views.entry(who).or_insert(new);
-        for (topic, count) in stranger.ignored {
+    let new = strangers.map(|stranger| StrangerView {
+        who: name(&stranger),
+        run: stranger.run.map(|run| run.to_string()),
+        ignored: stranger.ignored,
+    });
+    for StrangerView { who, run, ignored } in noted.iter().cloned().chain(new) {
+        let empty = StrangerView { who: who.clone(), run, ignored: BTreeMap::new() };
+        let view = views.entry(who).or_insert(empty);
+        for (topic, count) in ignored {
             *view.ignored.entry(topic).or_default() += count;
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::acoustic::AcousticReport;
 use crate::packing_text::indented;
-use grainlab_console::{Table, count, fixed};
+use grainlab_console::{Table, count, three_digits};
 use grainlab_core::Stiffness;
 use grainlab_core::results::PackingReport;
 
@@ -54,7 +54,7 @@ fn moduli(a: &AcousticReport, stiffness: Option<&Stiffness>) -> Table {
     let mut t = Table::new(["modulus", "network/MPa", "acoustic/MPa", "sigma", "difference", "in sigma"]);
     for (name, modulus, network) in a.moduli(stiffness) {
         let (value, sigma) = (a.medium.modulus(modulus), a.medium.stddev(modulus));
-        let mega = |v: Option<f64>| fixed(v.map(|v| v / 1e6), 2);
+        let mega = |v: Option<f64>| three_digits(v.map(|v| v / 1e6), 2);
         let off = value.zip(network).map(|(v, n)| v - n);
         let percent = off.zip(network).map(|(o, n)| 100.0 * o / n);
         let in_sigma = off.zip(sigma.filter(|s| *s > 0.0)).map(|(o, s)| o / s);

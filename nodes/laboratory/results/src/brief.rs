@@ -10,7 +10,7 @@ use crate::inference::{Inference, Origin, by_origin};
 use crate::packing_text::{eps, stress_ratio};
 use crate::read_back::InvertedPacking;
 use crate::summary::Summary;
-use grainlab_console::{count, fixed};
+use grainlab_console::{count, fixed, three_digits};
 use grainlab_core::Vec3;
 use grainlab_core::results::{InferredQuantity, PackingReport};
 use grainlab_msgs::{Exit, topics};
@@ -67,11 +67,11 @@ pub fn goes_on(saved_step: Option<u64>) -> String {
         .map_or_else(|| "begins anew: no state was saved".to_owned(), |n| format!("goes on from step {n}"))
 }
 
-/// Number of lost messages. A killed recorder did not count those of its file.
+/// Number of lost messages. A recorder that was killed, or had no room on the disk, did not count all of its file.
 pub fn lost_words(lost: u64, uncounted_files: usize) -> String {
     match uncounted_files {
         0 => format!("{lost} lost"),
-        n => format!("{lost} lost, not counting {}, whose recorder was killed", count(n, "file")),
+        n => format!("{lost} lost, not counting {} whose recorder ended early", count(n, "file")),
     }
 }
 
@@ -167,9 +167,9 @@ fn prepared(r: &PackingReport) -> String {
     let unbalanced =
         r.unbalanced_force_ratio.map_or_else(String::new, |u| format!(", unbalanced force {u:.0e}"));
     format!(
-        "{} grains at {:.2} kPa, solid fraction {:.4}, q/p {}{unbalanced}",
+        "{} grains at {} kPa, solid fraction {:.4}, q/p {}{unbalanced}",
         r.contacts.grains,
-        r.pressure() / 1e3,
+        three_digits(Some(r.pressure() / 1e3), 2),
         r.solid_fraction,
         stress_ratio(r),
     )
@@ -195,9 +195,9 @@ fn counted(r: &PackingReport) -> String {
 }
 
 fn measured(r: &PackingReport) -> String {
-    let [g12, g13, theta] = moduli(r).map(|m| fixed(m, 2));
+    let [g12, g13, theta] = moduli(r).map(|m| three_digits(m, 2));
     let [c11, c33, c13] = r.projected().map_or([None; 3], |t| [t.c11, t.c33, t.c13].map(Some));
-    let [c11, c33, c13] = [c11, c33, c13].map(|m| fixed(m.map(|m| m / 1e6), 2));
+    let [c11, c33, c13] = [c11, c33, c13].map(|m| three_digits(m.map(|m| m / 1e6), 2));
     format!("G12 {g12}, G13 {g13}, C11 {c11}, C33 {c33}, C13 {c13}, Theta {theta} MPa")
 }
 
@@ -273,11 +273,27 @@ fn pace(s: &Summary) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measured_packing::tests::lattice;
 
     #[test]
     fn a_path_can_be_pasted_into_a_shell() {
         assert_eq!(quoted("recordings/runs/demo-1-1"), "recordings/runs/demo-1-1");
         assert_eq!(quoted("my runs/it's"), r"'my runs/it'\''s'");
+    }
+
+    /// A lattice of grains with the modulus of a gel: kPa and less.
+    #[test]
+    fn moduli_and_pressure_of_soft_grains_keep_three_digits() {
+        let mut soft = lattice(true);
+        soft.material.shear_modulus = 1e4;
+        soft.contacts.iter_mut().for_each(|c| c.normal_force *= 1e-4);
+        let report = crate::measured_packing::tests::measured(&soft).report;
+        // C13 of this lattice is 0, and has no digits.
+        for text in [prepared(&report), measured(&report).replace("C13 0.00,", "")] {
+            assert!(!text.contains("0.00,") && !text.contains("0.00 ") && !text.contains("0.01,"), "{text}");
+        }
+        let [g12, ..] = moduli(&report).map(Option::unwrap);
+        assert!(g12 < 0.01 && measured(&report).contains(&format!("G12 {}", three_digits(Some(g12), 2))));
     }
 
     #[test]
@@ -299,7 +315,7 @@ mod tests {
     #[test]
     fn losses_that_a_killed_recorder_did_not_count_are_not_called_none() {
         assert_eq!(lost_words(0, 0), "0 lost");
-        assert_eq!(lost_words(2, 1), "2 lost, not counting 1 file, whose recorder was killed");
+        assert_eq!(lost_words(2, 1), "2 lost, not counting 1 file whose recorder ended early");
     }
 
     #[test]

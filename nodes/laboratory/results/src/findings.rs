@@ -7,7 +7,7 @@ use crate::inference::Inference;
 use crate::packing_text::eps;
 use crate::read_back::InvertedPacking;
 use doubts::Doubts;
-use grainlab_console::{and, count};
+use grainlab_console::{and, count, three_digits};
 use grainlab_core::results::{InferredQuantity, PackingReport};
 use grainlab_msgs::topics::PACKING_REPORT;
 pub use judged::{Judged, recommended};
@@ -100,20 +100,20 @@ fn four_digits(value: f64) -> f64 {
 }
 
 fn done_of_several(states: &[InvertedPacking]) -> String {
-    let range = |of: &dyn Fn(&PackingReport) -> f64, digits: usize, unit: &str| {
+    let range = |of: &dyn Fn(&PackingReport) -> f64, form: &dyn Fn(f64) -> String| {
         let values = states.iter().map(|s| of(&s.packing.report));
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-        let [low, high] = [low, high].map(|v| format!("{v:.digits$}"));
-        if low == high { format!("{low}{unit}") } else { format!("{low} to {high}{unit}") }
+        let [low, high] = [low, high].map(form);
+        if low == high { low } else { format!("{low} to {high}") }
     };
     let grains = states.iter().map(|s| s.packing.report.contacts.grains).max().unwrap_or(0);
     format!(
-        "{} in {} states: pressure {}. Counted: z {}, ε {}.",
+        "{} in {} states: pressure {} kPa. Counted: z {}, ε {}.",
         count(grains, "grain"),
         states.len(),
-        range(&|r| r.pressure() / 1e3, 1, " kPa"),
-        range(&|r| r.contacts.mechanical_coordination, 2, ""),
-        range(&|r| r.fabric.contact_anisotropy, 3, "")
+        range(&|r| r.pressure() / 1e3, &|p| three_digits(Some(p), 1)),
+        range(&|r| r.contacts.mechanical_coordination, &|z| format!("{z:.2}")),
+        range(&|r| r.fabric.contact_anisotropy, &|eps| format!("{eps:.3}"))
     )
 }
 
@@ -299,5 +299,18 @@ mod tests {
         let mut one = state(1, true, result("ok", Some((6.0, 0.1)), &[]));
         one.packing.warnings = ["a", "b", "c", "d", "e"].map(str::to_owned).to_vec();
         assert_eq!(Findings::of(&[one]).doubts, ["A.", "B.", "C.", "And 2 further warnings."]);
+    }
+
+    #[test]
+    fn the_pressures_of_several_states_of_soft_grains_keep_three_digits() {
+        let states = [1e-4, 2e-4].map(|share: f64| {
+            let mut soft = lattice(true);
+            soft.contacts.iter_mut().for_each(|c| c.normal_force *= share);
+            InvertedPacking { packing: measured(&soft), ..state(1, true, result("unknown", None, &[])) }
+        });
+        let [low, high] = states.each_ref().map(|s| three_digits(Some(s.packing.report.pressure() / 1e3), 1));
+        assert!(low.starts_with("0.00"), "{low}");
+        let text = done_of_several(&states);
+        assert!(text.contains(&format!("pressure {low} to {high} kPa")), "{text}");
     }
 }

@@ -1,5 +1,6 @@
 //! Names of several measurements of one packing: a laboratory may send the speeds of several shots.
 
+use grainlab_console::escape_name;
 use grainlab_msgs::builtin_interfaces::Time;
 use serde::{Serialize, Serializer};
 use std::collections::{BTreeMap, BTreeSet};
@@ -36,8 +37,7 @@ pub(crate) struct Identity {
 impl Identity {
     pub(crate) fn new(name: &str, stamp: Time) -> Self {
         // A control character would break the line or the table that it is printed in.
-        let printed = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
-        Self { name: name.chars().map(printed).collect(), stamp: (stamp.sec, stamp.nanosec) }
+        Self { name: escape_name(name).into_owned(), stamp: (stamp.sec, stamp.nanosec) }
     }
 
     pub(crate) fn stamp(&self) -> Time {

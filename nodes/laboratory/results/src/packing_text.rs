@@ -3,7 +3,7 @@
 use crate::measured_packing::{MeasuredPacking, ORIGIN};
 use crate::printer::Printed;
 use crate::quantities::{cells, columns, typed_cells};
-use grainlab_console::{Cell, Table, count, wrapped};
+use grainlab_console::{Cell, Table, count, three_digits, wrapped};
 use grainlab_core::quantity::by_key;
 use grainlab_core::results::{PackingReport, QUANTITIES};
 
@@ -41,12 +41,12 @@ pub(crate) fn text(m: &MeasuredPacking) -> String {
     let (r, c) = (&m.report, &m.report.contacts);
     let small = |ratio: Option<f64>| ratio.map_or_else(|| "-".to_owned(), |r| format!("{r:.1e}"));
     let about = format!(
-        "{}, {}, {}; phi {:.4}, p {:.4} kPa, q/p {}, unbalanced {}",
+        "{}, {}, {}; phi {:.4}, p {} kPa, q/p {}, unbalanced {}",
         count(c.grains, "grain"),
         count(c.contacts, "contact"),
         count(c.rattlers, "rattler"),
         r.solid_fraction,
-        r.pressure() / 1e3,
+        three_digits(Some(r.pressure() / 1e3), 4),
         small(r.stress_ratio()),
         small(r.unbalanced_force_ratio),
     );
@@ -107,9 +107,21 @@ pub(crate) fn indented(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measured_packing::tests::{lattice, measured};
 
     #[test]
     fn every_quantity_shown_is_one_of_the_table() {
         assert!(SHOWN.split(' ').all(|key| by_key(QUANTITIES, key).is_some()));
+    }
+
+    #[test]
+    fn a_pressure_of_millipascals_keeps_three_digits() {
+        let mut soft = lattice(true);
+        soft.contacts.iter_mut().for_each(|c| c.normal_force *= 1e-7);
+        let found = measured(&soft);
+        let p = found.report.pressure() / 1e3;
+        let text = text(&found);
+        assert!(p < 1e-5 && text.contains(&format!("p {} kPa", three_digits(Some(p), 4))), "{p}: {text}");
+        assert!(!text.contains("p 0.0000 kPa"), "{text}");
     }
 }

@@ -86,7 +86,6 @@ pub fn help<R: 'static>(table: &[Quantity<R>]) -> String {
     table.iter().map(line).collect()
 }
 
-/// A table in Markdown.
 #[cfg(test)]
 fn markdown<R: 'static>(table: &[Quantity<R>]) -> String {
     let line = |q: &Quantity<R>| {

@@ -112,7 +112,6 @@ pub(crate) struct EngineRange {
     pub(crate) from_step: u64,
 }
 
-/// The engines of these packings.
 fn engines(about: &BTreeMap<u64, About>) -> Vec<EngineRange> {
     let simulated = about.values().filter(|a| a.position.is_some());
     let named =
@@ -126,7 +125,6 @@ fn engines(about: &BTreeMap<u64, About>) -> Vec<EngineRange> {
 /// Packings published within phases.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub(crate) struct WithinPhases {
-    /// Number of packings.
     pub(crate) packings: usize,
     /// Number with a structure.
     pub(crate) structures: usize,
@@ -154,6 +152,7 @@ pub fn read(recording: &Recording) -> ReadBack {
     let authors = Names::of(recording);
     back.strangers = strangers::strangers(recording);
     back.dispute(strangers::disputes(recording));
+    back.complaints.extend(recording.ended_early());
     let mut about: BTreeMap<u64, About> = BTreeMap::new();
     let messages = match recording.messages(&Selection::topics(names)) {
         Ok(messages) => messages,

@@ -30,7 +30,6 @@ pub struct Summary {
     /// Inferred from data that are not about a packing of the run.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) of_instruments: Vec<Inference>,
-    /// Packings published within phases.
     pub(crate) within_phases: WithinPhases,
     /// Step of the last packing in the recording, from which a run that is not finished goes on.
     pub(crate) saved_step: Option<u64>,
@@ -75,15 +74,16 @@ pub struct TopicCount {
 }
 
 impl TopicCount {
-    /// The counts of the recorders, of which a killed one left none, and the messages that are there all the same.
+    /// Combines the counts of the recorders with the messages in the files. A killed recorder left no counts, and a file that was
+    /// damaged after its messages were counted has lost some of them.
     fn of(tallies: &[TopicTally], recorded: &BTreeMap<String, u64>) -> Vec<Self> {
         let count = |t: &TopicTally| {
-            let there = recorded.get(&t.name).copied().unwrap_or(0).max(t.recorded);
+            let there = recorded.get(&t.name).copied().unwrap_or(0);
             Self {
                 name: t.name.clone(),
-                published: t.published + (there - t.recorded),
+                published: t.published + there.saturating_sub(t.recorded),
                 recorded: there,
-                lost: t.lost,
+                lost: t.lost + t.recorded.saturating_sub(there),
                 repeated: t.repeated,
                 conflicting: Some(t.conflicting).filter(|n| *n > 0),
             }
@@ -104,9 +104,9 @@ impl Summary {
         let wall = number("wall_s").filter(|s| *s > 0.0);
         let per_wall = |key: &str| Some(number(key)? / wall?);
         let warnings: Vec<String> = launched.reasons.iter().cloned().chain(back.complaints).collect();
-        // The launcher may have no reason for missing results; the recording has.
-        let is_loss = launched.exit == Exit::DataLoss.code();
-        let reason = launched.reasons.first().or(warnings.first().filter(|_| is_loss)).cloned();
+        // The launcher may have no reason for missing results and moduli; the recording has.
+        let is_of_recording = [Exit::DataLoss, Exit::PhysicsInvalid].map(Exit::code).contains(&launched.exit);
+        let reason = launched.reasons.first().or(warnings.first().filter(|_| is_of_recording)).cloned();
         Self {
             strangers: back.strangers,
             topics: TopicCount::of(tallies.unwrap_or_default(), &launched.recorded),
@@ -142,7 +142,7 @@ pub struct Launched {
     pub wall_seconds: f64,
     /// Every process of the run.
     pub nodes: Vec<NodeEnd>,
-    /// Files of the recording whose recorder was killed: the counts of lost messages are without theirs.
+    /// Files whose recorder ended early, because it was killed or the disk was full: the counts of lost messages are without theirs.
     pub uncounted_files: usize,
     /// Exchanges in the recording, of the whole run.
     pub exchanges: Option<u64>,
@@ -163,5 +163,32 @@ impl Summary {
     /// Summary of a run that left nothing.
     pub(crate) fn of_nothing(exit: Exit) -> Self {
         Self::new(Launched { exit: exit.code(), ..Launched::default() }, ReadBack::default(), None)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_message_that_was_recorded_and_is_not_in_the_file_counts_as_lost() {
+        let tally = TopicTally {
+            name: "/stress".to_owned(),
+            published: 12,
+            recorded: 10,
+            lost: 1,
+            repeated: 1,
+            conflicting: 0,
+            redelivered: 0,
+            writers: Vec::new(),
+        };
+        let of = |there| {
+            let count =
+                &TopicCount::of(std::slice::from_ref(&tally), &[("/stress".to_owned(), there)].into())[0];
+            (count.published, count.recorded, count.lost, count.repeated)
+        };
+        assert_eq!(of(10), (12, 10, 1, 1));
+        assert_eq!(of(7), (12, 7, 4, 1), "the file was damaged");
+        assert_eq!(of(15), (17, 15, 1, 1), "a killed recorder did not count its file");
     }
 }

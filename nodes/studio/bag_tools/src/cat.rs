@@ -1,8 +1,8 @@
 //! `grainlab bag cat`.
 
 use crate::decoders::Decoders;
-use crate::excerpt::Excerpt;
 use crate::opened::losses;
+use crate::selection::Excerpt;
 use clap::ValueEnum;
 use grainlab_any_message::Shown;
 use grainlab_console::{Failure, worse};
@@ -11,6 +11,7 @@ use grainlab_recordings::{Message, MessagePath};
 use serde::Serialize;
 use std::fmt::Display;
 use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::PathBuf;
 use std::slice::from_ref;
 
 const EXAMPLES: &str = "\
@@ -26,6 +27,9 @@ complete without --max-array. A message that was recorded as JSON is printed as 
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
+    /// Run directory or MCAP file
+    #[arg(value_name = "PATH")]
+    path: PathBuf,
     #[command(flatten)]
     excerpt: Excerpt,
     #[command(flatten)]
@@ -56,7 +60,8 @@ enum Format {
 /// # Errors
 /// If the recording cannot be read, a topic does not exist, or stdout fails.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let (recording, selection, wanted) = args.excerpt.open(&args.messages)?;
+    let (recording, _) = args.messages.open(&args.path)?;
+    let (selection, wanted) = args.excerpt.select(&recording)?;
     let messages = recording.messages(&selection).map_err(Failure::failed)?;
     let mut decoders = Decoders::default();
     let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());

@@ -36,7 +36,7 @@ pub(crate) fn schema_of(channel: &ChannelInfo) -> Result<Schema, String> {
     if (schema, message) != ("ros2msg", "cdr") {
         return Err(format!(
             "its messages are {message:?} by a schema in {schema:?}, not CDR by a schema in ros2msg: print them with a program \
-             that reads this encoding (`mcap cat --json`); `grainlab bag cut` and `filter` copy them as they are"
+             that reads this encoding (`mcap cat --json`); `grainlab bag convert --format mcap` copies them as they are"
         ));
     }
     Schema::parse(&channel.ros_type, &channel.definition).map_err(|e| e.to_string())

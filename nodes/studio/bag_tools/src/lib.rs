@@ -1,18 +1,15 @@
 //! Tools of `grainlab bag` for any ROS 2 recording in MCAP: ours, those of `ros2 bag`, and those of other programs.
 //!
 //! - `cat`: messages as JSON or text
-//! - `convert`: one table per topic, as CSV or Parquet
+//! - `convert`: one table per topic, as CSV or JSON; or a recording made from others
 //! - `diff`: recordings compared
-//! - `copies`: new recordings from others, cut, merged, filtered, compressed
 
+mod appended;
 mod cat;
 mod convert;
-mod copies;
 mod decoders;
 mod diff;
-mod excerpt;
 mod opened;
-mod output;
 mod progress;
 mod selection;
 mod table;
@@ -20,7 +17,6 @@ mod tables;
 mod times;
 
 use clap::Subcommand;
-pub use copies::Copies;
 use grainlab_console::Failure;
 use grainlab_msgs::Exit;
 
@@ -31,11 +27,8 @@ pub enum Command {
     Cat(cat::Args),
     /// Compare two recordings, topic by topic.
     Diff(diff::Args),
-    /// Write one table per topic, as JSON lines, CSV or Parquet; or a recording again.
+    /// Write one table per topic, as JSON lines or CSV; or a recording made from others.
     Convert(convert::Args),
-    /// Write a recording made from others.
-    #[command(flatten)]
-    Copies(Copies),
 }
 
 /// Runs a command.
@@ -47,6 +40,5 @@ pub fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Cat(args) => cat::run(args),
         Command::Diff(args) => diff::run(args),
         Command::Convert(args) => convert::run(args),
-        Command::Copies(command) => copies::run(command),
     }
 }

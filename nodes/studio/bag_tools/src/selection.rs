@@ -1,11 +1,42 @@
-//! Topics on the command line.
+//! Topics and an interval on the command line.
 
+use crate::times::Interval;
 use grainlab_console::Failure;
-use grainlab_recordings::{ChannelInfo, Recording, TopicNames};
+use grainlab_recordings::{ChannelInfo, Recording, Selection, TopicNames};
+use std::slice::from_ref;
+
+/// The messages that are wanted.
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct Excerpt {
+    #[command(flatten)]
+    topics: Topics,
+    #[command(flatten)]
+    interval: Interval,
+}
+
+impl Excerpt {
+    /// Returns the topics of the recordings that are wanted, the first log time, and the one before which to end.
+    pub(crate) fn find(
+        &self,
+        recordings: &[Recording],
+    ) -> Result<(Topics, Option<u64>, Option<u64>), Failure> {
+        let topics = self.topics.check(recordings)?;
+        let (start, end) = self.interval.of(recordings)?;
+        Ok((topics, start, end))
+    }
+
+    /// Selects the messages of a recording; the last is the channels wanted, where not all of a topic are.
+    pub(crate) fn select(&self, recording: &Recording) -> Result<(Selection, Option<Topics>), Failure> {
+        let (found, start, end) = self.find(from_ref(recording))?;
+        let wanted = recording.all_channels().filter(|c| found.take(c));
+        let topics = Some(wanted.map(|c| c.topic.clone()).collect());
+        Ok((Selection { topics, start, end }, found.has_types().then_some(found)))
+    }
+}
 
 /// Topics, by name, regular expression or type.
 #[derive(Clone, Debug, Default, clap::Args)]
-pub struct Topics {
+pub(crate) struct Topics {
     #[command(flatten)]
     names: TopicNames,
     /// Topics to take, by type: sensor_msgs/msg/Imu
@@ -18,7 +49,6 @@ fn bare(name: &str) -> &str {
 }
 
 impl Topics {
-    /// True if topics are asked for.
     pub(crate) fn is_given(&self) -> bool {
         !self.names.topics.is_empty() || self.names.regex.is_some() || !self.types.is_empty()
     }

@@ -7,4 +7,4 @@ mod csv;
 mod shape;
 
 pub(crate) use csv::{Columns, CsvTable};
-pub(crate) use shape::{MOST_COLUMNS, Shape, time_columns};
+pub(crate) use shape::{MOST_COLUMNS, Shape};

@@ -1,20 +1,24 @@
 //! One file per topic.
 
+use crate::appended::Appended;
 use crate::cat;
 use crate::decoders::{Decoders, schema_of};
 use crate::progress::Progress;
 use crate::selection::Topics;
-use crate::table::{Columns, CsvTable, MOST_COLUMNS, Shape, time_columns};
-use grainlab_any_message::{Exploded, Length, Message as Decoded, MessageType, Schema, Shown, Value};
+use crate::table::{Columns, CsvTable, MOST_COLUMNS, Shape};
+use grainlab_any_message::{Message as Decoded, Schema, Shown};
 use grainlab_console::{Failure, count};
-use grainlab_parquet::{Column, Kind, ParquetError, ParquetTable};
 use grainlab_recordings::{ChannelInfo, Message, Recording, Selection};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fmt::Display;
-use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// Bytes of all buffers of CSV files together, and of the buffer of one file at least and at most. The writer of CSV looks through the
+/// rest of a value again for each buffer that it fills, so that a large one is faster.
+const BUFFERS: usize = 1 << 29;
+const BUFFER: (usize, usize) = (1 << 13, 1 << 21);
 
 /// Longest name of a file without number and extension: file systems take 255 bytes.
 const LONGEST_NAME: usize = 240;
@@ -24,7 +28,6 @@ const LONGEST_NAME: usize = 240;
 pub(crate) enum TableFormat {
     Json,
     Csv,
-    Parquet,
 }
 
 impl TableFormat {
@@ -32,7 +35,6 @@ impl TableFormat {
         match self {
             Self::Json => "jsonl",
             Self::Csv => "csv",
-            Self::Parquet => "parquet",
         }
     }
 }
@@ -45,11 +47,13 @@ pub(crate) struct Tables<'a> {
     format: TableFormat,
     /// Longest array that is written as columns of CSV.
     widest: usize,
-    /// Array with a row for each of its values.
-    explode: Option<&'a str>,
     /// Channels wanted, where not all of a topic are.
     wanted: Option<Topics>,
     list: Vec<Table>,
+    /// Place in the list by topic, type and definition.
+    known: BTreeMap<(String, String, Vec<u8>), usize>,
+    /// Number of tables by the name of their files without number and extension.
+    named: BTreeMap<String, usize>,
     /// Place in the list by the address of the channel, which stays its own while it is in here.
     places: BTreeMap<usize, (Arc<ChannelInfo>, Option<usize>)>,
     decoders: Decoders,
@@ -59,7 +63,6 @@ struct Table {
     channel: Arc<ChannelInfo>,
     /// Path without the extension.
     base: PathBuf,
-    exploded: Option<Exploded>,
     file: TableFile,
     rows: u64,
 }
@@ -67,19 +70,8 @@ struct Table {
 enum TableFile {
     /// The shape of the messages, before the file is begun.
     Shape(Shape),
-    Json(BufWriter<File>),
+    Json(BufWriter<Appended>),
     Csv(Box<CsvTable>),
-    Parquet(Box<ParquetTable<File>>),
-}
-
-impl Table {
-    /// The rows of a message.
-    fn rows(&self, message: Decoded) -> Vec<Decoded> {
-        match &self.exploded {
-            Some(exploded) => exploded.rows(&message),
-            None => vec![message],
-        }
-    }
 }
 
 impl TableFile {
@@ -92,10 +84,6 @@ impl TableFile {
             }
             Self::Json(file) => cat::json(file, message, Shown::new(row)).map_err(|e| e.to_string()),
             Self::Csv(file) => file.row(times, row).map_err(|e| e.to_string()),
-            Self::Parquet(file) => {
-                let times = times.map(Value::U64);
-                file.row(times.iter().chain(&row.values).map(Some)).map_err(|e| e.to_string())
-            }
         }
     }
 }
@@ -107,24 +95,33 @@ impl<'a> Tables<'a> {
         folder: &'a Path,
         format: TableFormat,
         widest: usize,
-        explode: Option<&'a str>,
         wanted: Option<Topics>,
     ) -> Self {
-        let (list, places, decoders) = (Vec::new(), BTreeMap::new(), Decoders::default());
-        Self { name, folder, format, widest, explode, wanted, list, places, decoders }
+        Self {
+            name,
+            folder,
+            format,
+            widest,
+            wanted,
+            list: Vec::new(),
+            known: BTreeMap::new(),
+            named: BTreeMap::new(),
+            places: BTreeMap::new(),
+            decoders: Decoders::default(),
+        }
     }
 
     /// Writes all selected messages. For CSV the recording is read twice: first for the lengths of
     /// arrays.
     pub(crate) fn convert(&mut self, recording: &Recording, selection: &Selection) -> Result<(), Failure> {
-        self.check_explode(recording, selection)?;
         if self.format == TableFormat::Csv {
             self.pass(recording, selection)?;
             self.decoders = Decoders::default();
+            let buffer = (BUFFERS / self.list.len().max(1)).clamp(BUFFER.0, BUFFER.1);
             for table in &mut self.list {
                 if let TableFile::Shape(shape) = &table.file {
                     let columns = Columns::of(shape, self.widest).ok_or_else(|| too_wide(&table.channel))?;
-                    let file = CsvTable::create(&with_extension(&table.base, self.format), columns);
+                    let file = CsvTable::create(&with_extension(&table.base, self.format), columns, buffer);
                     table.file = TableFile::Csv(Box::new(file.map_err(Failure::at(self.name))?));
                 }
             }
@@ -143,14 +140,10 @@ impl<'a> Tables<'a> {
             let decoded = self.decoders.decode(&message);
             let (Some(place), Some(decoded)) = (self.place(&message)?, decoded) else { continue };
             let table = &mut self.list[place];
-            for row in table.rows(decoded) {
-                let topic = &message.channel.topic;
-                table
-                    .file
-                    .write(&message, &row)
-                    .map_err(|e| Failure::at(self.name)(format!("{topic}: {e}")))?;
-                table.rows += 1;
-            }
+            let written = table.file.write(&message, &decoded);
+            let topic = &message.channel.topic;
+            written.map_err(|e| Failure::at(self.name)(format!("{topic}: {e}")))?;
+            table.rows += 1;
         }
         Ok(())
     }
@@ -167,28 +160,9 @@ impl<'a> Tables<'a> {
                 TableFile::Shape(_) => {}
                 TableFile::Json(mut file) => file.flush().map_err(|e| wrong(&e))?,
                 TableFile::Csv(file) => file.finish().map_err(|e| wrong(&e))?,
-                TableFile::Parquet(file) => file.finish().map(drop).map_err(|e| wrong(&e))?,
             }
         }
         Ok((lines, self.decoders))
-    }
-
-    /// An error if no topic has the array to explode.
-    fn check_explode(&self, recording: &Recording, selection: &Selection) -> Result<(), Failure> {
-        let Some(array) = self.explode else { return Ok(()) };
-        let taken = |c: &ChannelInfo| selection.topics.as_ref().is_none_or(|t| t.contains(&c.topic));
-        let channels = recording.channels().into_iter().filter(|c| taken(c));
-        let schemas: Vec<Schema> = channels.filter_map(|c| schema_of(&c).ok()).collect();
-        if schemas.iter().any(|s| Exploded::of(s.root(), array).is_some()) {
-            return Ok(());
-        }
-        let fields = schemas.iter().flat_map(|s| &s.root().fields);
-        let arrays: BTreeSet<&str> =
-            fields.filter(|f| f.kind.length != Length::One).map(|f| f.name.as_str()).collect();
-        let arrays = arrays.into_iter().collect::<Vec<_>>().join(", ");
-        Err(Failure::usage(format!(
-            "--explode {array}: no topic has an array of this name; they have: {arrays}"
-        )))
     }
 
     /// The table of a message; `None` if its type cannot be decoded.
@@ -198,44 +172,38 @@ impl<'a> Tables<'a> {
         if let Some((_, place)) = self.places.get(&address) {
             return Ok(*place);
         }
-        let key = |c: &ChannelInfo| (c.topic.clone(), c.ros_type.clone(), c.schema.clone());
-        let mut place = self.list.iter().position(|t| key(&t.channel) == key(channel));
+        let key = (channel.topic.clone(), channel.ros_type.clone(), channel.schema.clone());
+        let mut place = self.known.get(&key).copied();
         if place.is_none()
             && let Ok(schema) = schema_of(channel)
         {
-            place = Some(self.list.len());
+            let new = self.list.len();
             let table = self.begin(channel, &schema)?;
             self.list.push(table);
+            self.known.insert(key, new);
+            place = Some(new);
         }
         self.places.insert(address, (channel.clone(), place));
         Ok(place)
     }
 
-    fn begin(&self, channel: &Arc<ChannelInfo>, schema: &Schema) -> Result<Table, Failure> {
+    fn begin(&mut self, channel: &Arc<ChannelInfo>, schema: &Schema) -> Result<Table, Failure> {
         let name = file_name(&channel.topic)?;
-        let same = |t: &&Table| file_name(&t.channel.topic).is_ok_and(|other| other == name);
-        let number = match self.list.iter().filter(same).count() {
-            0 => String::new(),
-            taken => format!(".{}", taken + 1),
-        };
+        let taken = self.named.entry(name.clone()).or_default();
+        *taken += 1;
+        let number = if *taken == 1 { String::new() } else { format!(".{taken}") };
         let base = self.folder.join(format!("{name}{number}"));
-        let exploded = self.explode.and_then(|array| Exploded::of(schema.root(), array));
-        let kind = exploded.as_ref().map_or(schema.root(), Exploded::kind);
         let wrong = |e: &dyn Display| Failure::at(self.name)(e);
         let file = match self.format {
             TableFormat::Json => {
-                let file = File::create_new(with_extension(&base, self.format)).map_err(|e| wrong(&e))?;
+                let file = Appended::create(&with_extension(&base, self.format)).map_err(|e| wrong(&e))?;
                 TableFile::Json(BufWriter::with_capacity(1 << 16, file))
             }
             TableFormat::Csv => {
-                TableFile::Shape(Shape::of(kind, self.widest).ok_or_else(|| too_wide(channel))?)
-            }
-            TableFormat::Parquet => {
-                let file = parquet_table(&with_extension(&base, self.format), kind);
-                TableFile::Parquet(Box::new(file.map_err(|e| wrong(&format!("{}: {e}", channel.topic)))?))
+                TableFile::Shape(Shape::of(schema.root(), self.widest).ok_or_else(|| too_wide(channel))?)
             }
         };
-        Ok(Table { channel: channel.clone(), base, exploded, file, rows: 0 })
+        Ok(Table { channel: channel.clone(), base, file, rows: 0 })
     }
 }
 
@@ -245,15 +213,6 @@ fn with_extension(base: &Path, format: TableFormat) -> PathBuf {
     path.push(".");
     path.push(format.extension());
     path.into()
-}
-
-/// A Parquet file for the messages of a type.
-fn parquet_table(path: &Path, kind: &MessageType) -> Result<ParquetTable<File>, ParquetError> {
-    let times = time_columns(|time| kind.fields.iter().any(|f| f.name == time));
-    let fields = kind.fields.iter().map(|f| (f.name.clone(), Kind::Field(f.kind.clone())));
-    let columns = times.map(|name| (name, Kind::Time)).into_iter().chain(fields);
-    let columns: Vec<Column> = columns.map(|(name, kind)| Column { name, kind }).collect();
-    ParquetTable::new(File::create_new(path)?, "messages", &columns)
 }
 
 fn too_wide(channel: &ChannelInfo) -> Failure {
@@ -284,6 +243,35 @@ fn file_name(topic: &str) -> Result<String, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use mcap::records::MessageHeader;
+
+    /// A recording may have 65,535 topics, and a process 1024 open files.
+    #[test]
+    fn no_file_of_a_topic_stays_open() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let mut writer = mcap::Writer::new(file.reopen().unwrap()).unwrap();
+        let schema = writer.add_schema("std_msgs/msg/String", "ros2msg", b"string data\n").unwrap();
+        for n in 0..20 {
+            let channel_id = writer.add_channel(schema, &format!("/t{n}"), "cdr", &BTreeMap::new()).unwrap();
+            let header = MessageHeader { channel_id, sequence: 0, log_time: 1, publish_time: 1 };
+            writer.write_to_known_channel(&header, b"\0\x01\0\0\x03\0\0\0hi\0").unwrap();
+        }
+        writer.finish().unwrap();
+        let recording = Recording::open(file.path()).unwrap();
+        for format in [TableFormat::Json, TableFormat::Csv] {
+            let folder = tempfile::tempdir().unwrap();
+            let mut tables = Tables::new(folder.path(), folder.path(), format, 36, None);
+            tables.convert(&recording, &Selection::default()).unwrap();
+            assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 20);
+            let open = std::fs::read_dir("/proc/self/fd").unwrap().flatten();
+            let open = open.filter_map(|link| std::fs::read_link(link.path()).ok());
+            assert_eq!(open.filter(|path| path.starts_with(folder.path())).count(), 0, "{format:?}");
+            tables.finish().unwrap();
+            let sizes =
+                std::fs::read_dir(folder.path()).unwrap().map(|file| file.unwrap().metadata().unwrap().len());
+            assert!(sizes.min() > Some(20), "{format:?}");
+        }
+    }
 
     #[test]
     fn a_topic_too_long_for_the_name_of_a_file_is_refused() {

@@ -39,7 +39,7 @@ fn seconds(text: &str) -> Option<u64> {
 
 /// An interval of log time.
 #[derive(Clone, Debug, Default, clap::Args)]
-pub struct Interval {
+pub(crate) struct Interval {
     /// First log time: seconds since 1970, or 2026-01-31T12:00:00Z
     #[arg(long, value_name = "TIME", conflicts_with = "start_offset")]
     start: Option<Time>,
@@ -81,11 +81,6 @@ impl Interval {
             }
             interval => Ok(interval),
         }
-    }
-
-    /// True if any of it is set.
-    pub(crate) fn is_set(&self) -> bool {
-        self.start.is_some() || self.end.is_some() || self.start_offset.is_some() || self.duration.is_some()
     }
 }
 

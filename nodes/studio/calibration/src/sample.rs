@@ -117,7 +117,6 @@ impl CalibrationSample {
         Ok(())
     }
 
-    /// The error of a packing with this fault.
     pub(crate) fn fault(&self, fault: String) -> CalibrationError {
         CalibrationError::Packing { packing: format!("{} ({})", self.packing, self.place), fault }
     }

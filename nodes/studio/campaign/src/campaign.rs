@@ -2,7 +2,7 @@
 
 use crate::file::{CampaignFile, Record};
 use crate::member::{Member, Setting};
-use grainlab_console::Failure;
+use grainlab_console::{Failure, separated};
 use grainlab_recordings::input;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -201,25 +201,28 @@ fn flatten(table: &Table, place: &str, all: &mut Vec<Setting>) {
     }
 }
 
-/// The members in a CSV.
+/// The members in a table.
 fn table_of(path: &Path, common: &[Setting], folder: &Path) -> Result<Vec<Member>, Failure> {
     let fault = |why: String| Failure::usage(format!("table {}: {why}", path.display()));
-    let unread = |e| Failure::failed(format!("table {}: {e}", path.display()));
-    let text = input::text(path, input::SETTINGS).map_err(unread)?;
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+    let (_, text) = separated::read(path).map_err(|e| Failure::new(e.exit, format!("table {e}")))?;
+    let mut reader =
+        csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| fault(e.to_string()))?.clone();
     let is_known = |n: usize| header.iter().take(n).any(|name| name == &header[n]);
     if let Some(twice) = (0..header.len()).find(|n| is_known(*n)) {
         return Err(fault(format!("the column {} occurs twice: leave one of them", &header[twice])));
     }
     let column = |name: &str| {
-        header.iter().position(|h| h == name).ok_or_else(|| fault(format!("it has no column {name}")))
+        let all = || header.iter().collect::<Vec<_>>().join(", ");
+        let missing = || fault(format!("it has no column {name}; its columns are: {}", all()));
+        header.iter().position(|h| h == name).ok_or_else(missing)
     };
     let (scene, seed) = (column("scene")?, column("seed")?);
     let mut members = Vec::new();
-    for (row, record) in reader.records().enumerate() {
+    for record in reader.records() {
         let record = record.map_err(|e| fault(e.to_string()))?;
-        let unknown = |_| fault(format!("row {}: seed {:?} is not a number", row + 2, &record[seed]));
+        let line = record.position().map_or(0, csv::Position::line);
+        let unknown = |_| fault(format!("line {line}: seed {:?} is not a number", &record[seed]));
         let number = record[seed].parse().map_err(unknown)?;
         let is_set = |n: &usize| *n != scene && *n != seed && !record[*n].is_empty();
         let own = (0..header.len()).filter(is_set);

@@ -40,7 +40,7 @@ mod tests {
         let text =
             "name = 'x'\nscenes = ['s1']\nseeds = [7]\nset = { description = \"it's\" }\nlaunch = 'acoustic'";
         let campaign = Campaign::parse(text, Path::new("")).unwrap();
-        let folder = Folder::create(root.path()).unwrap().0;
+        let folder = Folder::create(root.path(), &campaign).unwrap();
         let line = line(&command(&campaign, &folder, &campaign.members[0]).unwrap());
         let end = format!(
             " launch acoustic --scene s1 --seed 7 --set 'description=it'\\''s' --record results --one-process --no-report --run {}/members/s1-7",

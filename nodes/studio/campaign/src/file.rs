@@ -15,7 +15,6 @@ pub(crate) enum Record {
     All,
 }
 
-/// A key of the file.
 pub(crate) struct Key {
     pub(crate) name: &'static str,
     /// True if each `[[group]]` has it, too.
@@ -87,7 +86,6 @@ fn refuse_unknown(table: &Table, place: &str) -> Result<(), Failure> {
     )))
 }
 
-/// Seeds: a list, or a range.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(untagged, deny_unknown_fields)]
 pub(crate) enum Seeds {

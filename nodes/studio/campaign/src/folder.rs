@@ -2,11 +2,12 @@
 
 use crate::campaign::Campaign;
 use crate::member::Member;
-use grainlab_console::{Failure, json, write_whole};
+use grainlab_console::{Failure, append_in, json, replace_whole};
 use grainlab_msgs::Exit;
 use grainlab_recordings::{AtWork, Lock, RunEnd, RunState, input, run_end, run_state};
 use serde::Serialize;
 use std::collections::BTreeSet;
+use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -37,12 +38,11 @@ pub struct Standing {
     pub state: &'static str,
     /// Why it is not finished, or what runs it.
     pub reason: Option<String>,
-    /// Wall time, s: so far, or of its last process.
+    /// Wall time, s: so far, or of its last process. `None` for one that runs on another host.
     pub seconds: Option<f64>,
 }
 
 impl Standing {
-    /// The words for states.
     const STATES: [&str; 6] = ["finished", "running", "waiting", "interrupted", "failed", "unknown"];
 
     /// Number of members in each state, without states that have none.
@@ -75,16 +75,24 @@ impl Folder {
         Ok(Self { root })
     }
 
-    /// Creates the folder, or finds it, for this process alone as long as the lock is held.
-    pub fn create(root: &Path) -> Result<(Self, Lock), Failure> {
+    /// Creates the folder of a campaign, or finds it.
+    ///
+    /// # Errors
+    /// Returns wrong usage for the folder of another campaign, and for one with files that the campaign would replace.
+    pub fn create(root: &Path, campaign: &Campaign) -> Result<Self, Failure> {
+        refuse_others(root, campaign)?;
         let failed = |e: io::Error| Failure::failed(format!("the folder {}: {e}", root.display()));
         std::fs::create_dir_all(root).map_err(failed)?;
         let folder = Self { root: root.canonicalize().map_err(failed)? };
-        let lock = Lock::take(&folder.root, TIME_LIMIT)?;
         for part in [folder.members(), folder.logs()] {
             std::fs::create_dir_all(part).map_err(failed)?;
         }
-        Ok((folder, lock))
+        Ok(folder)
+    }
+
+    /// Reserves the folder for this process, as long as the lock is held.
+    pub fn lock(&self) -> Result<Lock, Failure> {
+        Lock::take(&self.root, TIME_LIMIT)
     }
 
     /// For this process alone to write the tables, as long as the lock is held. The campaign may go on.
@@ -92,16 +100,10 @@ impl Folder {
         Lock::take(&self.logs(), TIME_TO_GATHER)
     }
 
-    /// Writes what its members are; refuses the folder of another campaign.
+    /// Writes what its members are; refuses the folder of another campaign, which may have begun meanwhile.
     pub fn plan(&self, campaign: &Campaign) -> Result<(), Failure> {
-        if let Some((_, known)) = Self::open(&self.root).ok().filter(|(_, known)| known.name != campaign.name)
-        {
-            let (root, name) = (self.root.display(), known.name);
-            return Err(Failure::usage(format!(
-                "{root}: the campaign {name} is there: choose another folder"
-            )));
-        }
-        self.write("campaign.toml", &campaign.text)?;
+        refuse_others(&self.root, campaign)?;
+        self.write(TEXT, &campaign.text)?;
         self.write(CAMPAIGN, &json(campaign)?).map(|_| ())
     }
 
@@ -124,12 +126,12 @@ impl Folder {
 
     /// The directories of the runs.
     fn members(&self) -> PathBuf {
-        self.root.join("members")
+        self.root.join(MEMBERS)
     }
 
     /// The output of each member.
     pub(crate) fn logs(&self) -> PathBuf {
-        self.root.join("logs")
+        self.root.join(LOGS)
     }
 
     /// The directory of the run of a member.
@@ -153,7 +155,7 @@ impl Folder {
         let run = self.run(member);
         // Before its end is looked for: a run that ends meanwhile is not taken for a killed one.
         let at_work = Lock::at_work(&run);
-        let given_up = std::fs::read_to_string(self.given_up(member)).ok();
+        let given_up = input::text(&self.given_up(member), input::SETTINGS).ok();
         if let Some(code) = given_up.and_then(|text| text.lines().next()?.trim().parse().ok()) {
             return (MemberState::Failed(code), at_work);
         }
@@ -188,9 +190,8 @@ impl Folder {
             }
             _ => ended("interrupted"),
         };
-        let began = || run.join(Lock::FILE).metadata()?.modified();
         let seconds = match state {
-            "running" => began().ok().and_then(|t| t.elapsed().ok()).map(|t| t.as_secs_f64()),
+            "running" => Lock::held_for(&run).map(|time| time.as_secs_f64()),
             _ => end.as_ref().and_then(|end| end.wall_seconds),
         };
         Standing { name, state, reason, seconds }
@@ -198,7 +199,7 @@ impl Folder {
 
     /// The end of the log of a member that was tried, and left no run.
     fn last_line(&self, member: &Member) -> Option<String> {
-        let log = std::fs::read_to_string(self.log(member)).ok()?;
+        let log = input::text(&self.log(member), input::TEXT).ok()?;
         log.lines()
             .rfind(|line| !line.trim().is_empty())
             .filter(|line| line.contains("error"))
@@ -215,7 +216,12 @@ impl Folder {
 
     /// The output of a member on this machine.
     pub(crate) fn log(&self, member: &Member) -> PathBuf {
-        self.logs().join(format!("{}.log", member.name))
+        self.logs().join(log_name(member))
+    }
+
+    /// Opens the output of a member, to be continued.
+    pub(crate) fn open_log(&self, member: &Member) -> io::Result<File> {
+        append_in(&self.logs(), &log_name(member))
     }
 
     /// The file with the exit code of a member that was given up, and the limit that it reached.
@@ -232,12 +238,12 @@ impl Folder {
     /// Notes that a member failed; `limit` is the one that it reached.
     pub(crate) fn fail(&self, member: &Member, code: u8, limit: &str) -> Result<(), Failure> {
         let path = self.given_up(member);
-        write_whole(&path, format!("{code}\n{limit}\n")).map_err(Failure::at(&path))
+        replace_whole(&path, format!("{code}\n{limit}\n")).map_err(Failure::at(&path))
     }
 
     /// The limit that a member reached.
     fn limit(&self, member: &Member) -> Option<String> {
-        let text = std::fs::read_to_string(self.given_up(member)).ok()?;
+        let text = input::text(&self.given_up(member), input::SETTINGS).ok()?;
         text.lines().nth(1).filter(|line| !line.is_empty()).map(str::to_owned)
     }
 
@@ -262,12 +268,17 @@ impl Folder {
         }
     }
 
-    /// Writes a file of the campaign at once.
+    /// Writes a file of the campaign at once, one of `FILES`.
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> Result<PathBuf, Failure> {
+        assert!([TEXT, CAMPAIGN].iter().chain(&FILES).any(|known| *known == name), "{name} is none of FILES");
         let path = self.root.join(name);
-        write_whole(&path, content).map_err(Failure::at(&path))?;
+        replace_whole(&path, content).map_err(Failure::at(&path))?;
         Ok(path)
     }
+}
+
+fn log_name(member: &Member) -> String {
+    format!("{}.log", member.name)
 }
 
 /// Time for another process that works in the folder to end.
@@ -276,15 +287,55 @@ const TIME_LIMIT: Duration = Duration::from_secs(10);
 /// Time for another process to write the tables.
 const TIME_TO_GATHER: Duration = Duration::from_secs(600);
 
-/// True if there is a file of a recording.
 fn has_recording(run: &Path) -> bool {
     let is_recording =
         |e: io::Result<std::fs::DirEntry>| e.is_ok_and(|e| e.path().extension().is_some_and(|x| x == "mcap"));
     std::fs::read_dir(run).is_ok_and(|mut entries| entries.any(is_recording))
 }
 
+/// Refuses a folder of another campaign, and a folder without a campaign in which this one would replace a file.
+fn refuse_others(root: &Path, campaign: &Campaign) -> Result<(), Failure> {
+    let known = Folder::open(root).ok().map(|(_, known)| known);
+    if let Some(Campaign { name, .. }) = known.as_ref().filter(|known| known.name != campaign.name) {
+        let root = root.display();
+        return Err(Failure::usage(format!("{root}: the campaign {name} is there: choose another folder")));
+    }
+    // The text that the campaign was read from, or that an earlier start wrote.
+    let texts = [Some(&campaign.text), known.as_ref().map(|known| &known.text)];
+    let is_own = |text: String| texts.contains(&Some(&text));
+    let of_campaign = |name: &str| match name {
+        TEXT => input::text(&root.join(name), input::SETTINGS).is_ok_and(is_own),
+        _ => known.is_some(),
+    };
+    // Folders may be empty: a campaign that was killed at its start leaves them.
+    let is_there = |path: &Path| match std::fs::read_dir(path) {
+        Ok(mut entries) => entries.next().is_some(),
+        Err(_) => path.symlink_metadata().is_ok(),
+    };
+    let is_other = |name: &&str| is_there(&root.join(name)) && !of_campaign(name);
+    let mut names = [TEXT, CAMPAIGN, MEMBERS, LOGS].into_iter().chain(FILES);
+    let Some(name) = names.find(is_other) else { return Ok(()) };
+    Err(Failure::usage(format!(
+        "{}: this is not of this campaign, which would replace it: choose another folder with --out, or move it",
+        root.join(name).display()
+    )))
+}
+
+/// Name of the folder of the runs.
+const MEMBERS: &str = "members";
+
+/// Name of the folder of the output of the runs.
+const LOGS: &str = "logs";
+
+/// Name of the copy of the file of the campaign.
+const TEXT: &str = "campaign.toml";
+
 /// Name of the file of the members.
 const CAMPAIGN: &str = "campaign.json";
+
+/// Names of the files of results, and of the programs for a cluster.
+const FILES: [&str; 7] =
+    ["states.csv", "groups.csv", "index.html", "reproduction.json", "reproduction.csv", "tasks.sh", "hq.py"];
 
 /// True for an exit code that follows from the scene alone.
 pub(crate) fn will_end_so_again(code: u8) -> bool {
@@ -300,7 +351,7 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let text = "name = 'x'\nscenes = ['s1']\nseeds = [1, 2, 3, 4, 5]";
         let campaign = Campaign::parse(text, root.path()).unwrap();
-        let (folder, _lock) = Folder::create(root.path()).unwrap();
+        let folder = Folder::create(root.path(), &campaign).unwrap();
         folder.plan(&campaign).unwrap();
         for (member, exit) in campaign.members.iter().zip([0, 4, 130]) {
             let run = folder.run(member);
@@ -314,7 +365,12 @@ mod tests {
         std::fs::create_dir_all(&killed).unwrap();
         std::fs::write(killed.join("launch.json"), "{}").unwrap();
         let at_work = Lock::take(&killed, Duration::ZERO).unwrap();
-        assert_eq!(again.standing(&known.members[4]).state, "running");
+        let hour = Duration::from_secs(3600);
+        let lock = File::options().append(true).open(killed.join(Lock::FILE)).unwrap();
+        lock.set_modified(std::time::SystemTime::now() - hour).unwrap();
+        let running = again.standing(&known.members[4]);
+        assert!(running.seconds.is_some_and(|s| s < 60.0), "the wall clock was set forward by an hour");
+        assert_eq!(running.state, "running");
         drop(at_work);
         let standings: Vec<Standing> = known.members.iter().map(|m| again.standing(m)).collect();
         assert_eq!(Standing::words(&standings), "1 finished, 1 waiting, 2 interrupted, 1 failed");
@@ -332,7 +388,36 @@ mod tests {
         assert!(Folder::open(&root.path().join("logs")).unwrap_err().to_string().contains("not the folder"));
         let fewer = Campaign { members: known.members[..2].to_vec(), ..known.clone() };
         assert_eq!([&known, &fewer].map(|campaign| again.others(campaign)), [0, 2]);
-        let refused = folder.plan(&Campaign { name: "y".into(), ..known }).unwrap_err().to_string();
+        let refused = folder.plan(&Campaign { name: "y".into(), ..known.clone() }).unwrap_err().to_string();
         assert!(refused.ends_with("the campaign x is there: choose another folder"), "{refused}");
+        std::fs::write(root.path().join(TEXT), "# edited").unwrap();
+        let refused = folder.plan(&known).unwrap_err().to_string();
+        assert!(refused.contains("campaign.toml: this is not of this campaign"), "{refused}");
+    }
+
+    #[test]
+    fn a_campaign_replaces_no_file_of_others() {
+        let text = "name = 'x'\nscenes = ['s1']\nseeds = [1]";
+        let campaign = Campaign::parse(text, Path::new("")).unwrap();
+        for name in [TEXT, CAMPAIGN].into_iter().chain(FILES) {
+            let root = tempfile::tempdir().unwrap();
+            std::fs::write(root.path().join(name), "of the user").unwrap();
+            let refused = Folder::create(root.path(), &campaign).unwrap_err();
+            assert_eq!(refused.exit, Exit::Usage);
+            assert!(refused.to_string().contains(&format!("{name}: this is not of")), "{refused}");
+            assert_eq!(std::fs::read_dir(root.path()).unwrap().count(), 1, "nothing is made");
+        }
+        let root = tempfile::tempdir().unwrap();
+        std::fs::create_dir_all(root.path().join("members/s1-1")).unwrap();
+        let refused = Folder::create(root.path(), &campaign).unwrap_err().to_string();
+        assert!(refused.contains("members: this is not of"), "{refused}");
+        // The file of the campaign may be in its folder.
+        let root = tempfile::tempdir().unwrap();
+        std::fs::write(root.path().join(TEXT), text).unwrap();
+        std::fs::write(root.path().join("notes.txt"), "").unwrap();
+        let folder = Folder::create(root.path(), &campaign).unwrap();
+        folder.plan(&campaign).unwrap();
+        folder.write("states.csv", "a").unwrap();
+        Folder::create(root.path(), &campaign).unwrap().plan(&campaign).unwrap();
     }
 }

@@ -36,13 +36,11 @@ impl Progress {
         new
     }
 
-    /// A member is finished.
     pub(crate) fn finished(&mut self, name: &str, took: Duration) {
         self.done += 1;
         self.line(&format!("{name} in {:.1} s", took.as_secs_f64()));
     }
 
-    /// A member failed.
     pub(crate) fn failed(&mut self, name: &str) {
         self.failed += 1;
         self.line(&format!("{name} failed"));
@@ -53,7 +51,6 @@ impl Progress {
         self.say(&format!("{name} was interrupted, and is continued"));
     }
 
-    /// So many run now.
     pub(crate) fn running(&mut self, running: usize) {
         self.running = running;
         self.draw();

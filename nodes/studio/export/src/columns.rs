@@ -2,7 +2,6 @@
 
 use grainlab_core::{Contact, Packing, Vec3};
 
-/// Numbers of one kind.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Values {
     Float(Vec<f64>),
@@ -10,7 +9,6 @@ pub(crate) enum Values {
     Signed(Vec<i32>),
 }
 
-/// A named column.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Column {
     pub(crate) name: &'static str,

@@ -1,7 +1,6 @@
 //! The files of one packing, or of a run, by format.
 
 use crate::columns::Piece;
-use crate::vtkhdf::vtkhdf;
 use crate::vtp::{pvd, vtp};
 use crate::{csv, extended_xyz, lammps_data, lammps_dump, lammps_dump::UNITS, lammps_local, sidecar};
 use clap::ValueEnum;
@@ -21,9 +20,6 @@ pub enum ExportFormat {
     Xyz,
     /// VTK XML: grains and contacts of each packing, and a collection of all
     Vtk,
-    /// VTKHDF: grains and contacts of each packing
-    #[value(name = "vtkhdf")]
-    VtkHdf,
 }
 
 /// A part of a file.
@@ -31,8 +27,8 @@ pub enum ExportFormat {
 pub struct FilePart {
     /// Name of the file.
     pub name: String,
-    /// Bytes that follow in it.
-    pub content: Vec<u8>,
+    /// Text that follows in it.
+    pub content: String,
 }
 
 /// Writes the packings of a run one after the other.
@@ -55,38 +51,30 @@ impl Exporter {
     }
 
     /// Parts that the next packing adds. Parts of the same name are parts of one file.
-    ///
-    /// # Errors
-    /// If the format cannot hold the packing.
-    pub fn next(&mut self, packing: &Packing) -> Result<Vec<FilePart>, String> {
+    pub fn next(&mut self, packing: &Packing) -> Vec<FilePart> {
         let n = self.states.len() + 1;
-        let part = |name: String, content: Vec<u8>| FilePart { name, content };
-        let text = |name: String, content: String| part(name, content.into_bytes());
+        let part = |name: String, content: String| FilePart { name, content };
         let parts = match self.format {
             ExportFormat::Csv => vec![
-                text(format!("packing_{n}.csv"), csv(packing)),
-                text(format!("packing_{n}.json"), sidecar(packing)),
+                part(format!("packing_{n}.csv"), csv(packing)),
+                part(format!("packing_{n}.json"), sidecar(packing)),
             ],
             ExportFormat::LammpsDump => vec![
-                text(
+                part(
                     "packings.dump".into(),
                     if n == 1 { UNITS } else { "" }.to_owned() + &lammps_dump(packing),
                 ),
-                text("contacts.dump".into(), lammps_local(packing)),
+                part("contacts.dump".into(), lammps_local(packing)),
             ],
-            ExportFormat::LammpsData => vec![text(format!("packing_{n}.data"), lammps_data(packing))],
-            ExportFormat::Xyz => vec![text("packings.xyz".into(), extended_xyz(packing))],
+            ExportFormat::LammpsData => vec![part(format!("packing_{n}.data"), lammps_data(packing))],
+            ExportFormat::Xyz => vec![part("packings.xyz".into(), extended_xyz(packing))],
             ExportFormat::Vtk => vec![
-                text(format!("grains_{n}.vtp"), vtp(packing, &Piece::grains(packing))),
-                text(format!("contacts_{n}.vtp"), vtp(packing, &Piece::contacts(packing))),
-            ],
-            ExportFormat::VtkHdf => vec![
-                part(format!("grains_{n}.vtkhdf"), vtkhdf(packing, &Piece::grains(packing))?),
-                part(format!("contacts_{n}.vtkhdf"), vtkhdf(packing, &Piece::contacts(packing))?),
+                part(format!("grains_{n}.vtp"), vtp(packing, &Piece::grains(packing))),
+                part(format!("contacts_{n}.vtp"), vtp(packing, &Piece::contacts(packing))),
             ],
         };
         self.states.push((packing.time, parts.iter().map(|p| p.name.clone()).collect()));
-        Ok(parts)
+        parts
     }
 
     /// Parts that follow the last packing.
@@ -96,7 +84,7 @@ impl Exporter {
         }
         let collection = |name: &str, k: usize| {
             let states = self.states.iter().map(|(time, files)| (*time, files[k].as_str()));
-            FilePart { name: name.to_owned(), content: pvd(states).into_bytes() }
+            FilePart { name: name.to_owned(), content: pvd(states) }
         };
         vec![collection("grains.pvd", 0), collection("contacts.pvd", 1)]
     }

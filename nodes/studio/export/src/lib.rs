@@ -1,7 +1,7 @@
 //! Packings as files of other programs.
 //!
 //! - `files`: the files of one packing or of a run, by format; `columns`: what formats with named columns hold
-//! - `csv`, `lammps_*`, `extended_xyz`, `vtp`, `vtkhdf`: one format each
+//! - `csv`, `lammps_*`, `extended_xyz`, `vtp`: one format each
 
 mod columns;
 mod csv;
@@ -10,7 +10,6 @@ mod files;
 mod lammps_data;
 mod lammps_dump;
 mod lammps_local;
-mod vtkhdf;
 mod vtp;
 
 pub use csv::{csv, sidecar};

@@ -1,4 +1,4 @@
-//! One call of a service.
+//! One call of a parameter service.
 
 use crate::graph::Graph;
 use crate::observer::Observer;
@@ -16,7 +16,7 @@ const REPEAT_PERIOD: Duration = Duration::from_millis(500);
 /// Time limit for an answer.
 const TIME_LIMIT: Duration = Duration::from_secs(10);
 
-/// Sends a request to the service until its answer arrives.
+/// Sends a request to the service, of the type `kind` of `rcl_interfaces`, until its answer arrives.
 ///
 /// # Errors
 /// If there is no such service or more than one, or none answers within 10 s.
@@ -24,7 +24,7 @@ pub(crate) fn call<Req: Message + Clone + 'static, Resp: Message + 'static>(
     observer: &mut Observer,
     graph: &Graph,
     service: &str,
-    type_name: (&str, &str),
+    kind: &str,
     request: &Req,
 ) -> Result<Resp, Failure> {
     let services = graph.services();
@@ -44,7 +44,7 @@ pub(crate) fn call<Req: Message + Clone + 'static, Resp: Message + 'static>(
         .reliability_reliable(WhenFull::DEFAULT)
         .history(History::KeepLast { depth: 10 });
     let name = Name::parse(service).map_err(|e| Failure::failed(format!("{service}: {e:?}")))?;
-    let kind = ServiceTypeName::new(type_name.0, type_name.1);
+    let kind = ServiceTypeName::new("rcl_interfaces", kind);
     let client: Client<Req, Resp> =
         observer.node.create_client(mapping, &name, &kind, qos.clone(), qos).map_err(Failure::failed)?;
     let start = Instant::now();

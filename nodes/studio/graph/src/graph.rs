@@ -51,7 +51,6 @@ impl Endpoint {
     }
 }
 
-/// A node with its endpoints.
 #[derive(Clone, Debug)]
 pub(crate) struct NodeEntry {
     /// Fully qualified name.
@@ -67,7 +66,6 @@ pub(crate) struct Graph {
     pub(crate) endpoints: Vec<Endpoint>,
 }
 
-/// The endpoints of one topic.
 #[derive(Default)]
 pub(crate) struct TopicEntry<'a> {
     pub(crate) publishers: Vec<&'a Endpoint>,
@@ -87,7 +85,6 @@ impl TopicEntry<'_> {
 }
 
 impl Graph {
-    /// Topics by name.
     pub(crate) fn topics(&self) -> BTreeMap<&str, TopicEntry<'_>> {
         let mut topics: BTreeMap<&str, TopicEntry<'_>> = BTreeMap::new();
         for endpoint in &self.endpoints {
@@ -139,7 +136,6 @@ impl Graph {
         publishers.iter().filter(ours).map(|e| self.owner(e)).collect()
     }
 
-    /// The endpoints of a node.
     pub(crate) fn endpoints_of(&self, node: &NodeEntry) -> Vec<&Endpoint> {
         self.endpoints.iter().filter(|e| node.endpoints.contains(&e.guid)).collect()
     }

@@ -1,7 +1,7 @@
-//! `grainlab topic`, `node`, `param`, `service`, `interface` and `doctor`: the ROS graph of a domain, over DDS without a ROS installation.
+//! `grainlab topic`, `node`, `param`, `interface` and `doctor`: the ROS graph of a domain, over DDS without a ROS installation.
 //!
 //! - `observer`: joins the domain and collects the graph; `graph`: nodes and endpoints; `names`: names on the wire
-//! - `topic`, `node`, `param`, `service`, `interface`, `doctor`: the commands
+//! - `topic`, `node`, `param`, `interface`, `doctor`: the commands
 //! - `call`: one call of a service; `reports`: what nodes report of themselves; `view`: formats of the output
 //!
 //! The commands belong to no run: what they read holds up no node, and what they set changes no result.
@@ -15,6 +15,5 @@ pub mod node;
 mod observer;
 pub mod param;
 mod reports;
-pub mod service;
 pub mod topic;
 mod view;

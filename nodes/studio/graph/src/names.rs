@@ -1,6 +1,6 @@
 //! Names of topics, services and types on the wire (ROS 2 design, "Topic and Service name mapping to DDS").
 
-use grainlab_console::Failure;
+use grainlab_console::{Failure, escape_name};
 
 /// A topic of DDS as ROS knows it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -15,18 +15,11 @@ pub(crate) enum RosName {
     Other(String),
 }
 
-/// A name from the network, safe to print: control characters are escaped.
-pub(crate) fn printable(name: &str) -> String {
-    name.chars()
-        .map(|c| if c.is_control() { c.escape_default().to_string() } else { c.to_string() })
-        .collect()
-}
-
 impl RosName {
     /// From the name of a DDS topic.
     pub(crate) fn of(dds: &str) -> Self {
-        let dds = printable(dds);
-        let dds = dds.as_str();
+        let dds = escape_name(dds);
+        let dds = dds.as_ref();
         let other = || Self::Other(dds.to_owned());
         let service = |rest: &str, suffix: &str| rest.strip_suffix(suffix).map(|name| format!("/{name}"));
         match dds.split_once('/') {
@@ -40,7 +33,7 @@ impl RosName {
 
 /// `grainlab_msgs::msg::dds_::Stress_` as `grainlab_msgs/msg/Stress`; for a service without `_Request` and `_Response`.
 pub(crate) fn ros_type(dds: &str) -> String {
-    let dds = printable(dds);
+    let dds = escape_name(dds);
     let parts: Vec<&str> = dds.split("::").collect();
     match parts[..] {
         [package, kind, "dds_", name] => {
@@ -51,7 +44,7 @@ pub(crate) fn ros_type(dds: &str) -> String {
             };
             format!("{package}/{kind}/{name}")
         }
-        _ => dds.clone(),
+        _ => dds.to_string(),
     }
 }
 
@@ -67,6 +60,11 @@ pub(crate) fn unknown<'a>(kind: &str, name: &str, known: impl Iterator<Item = &'
 /// A name as typed, with a slash before it.
 pub(crate) fn absolute(name: &str) -> String {
     format!("/{}", name.trim_matches('/'))
+}
+
+/// True for a name of which a part begins with an underscore: lists leave it out.
+pub(crate) fn is_hidden(name: &str) -> bool {
+    name.split('/').any(|part| part.starts_with('_'))
 }
 
 #[cfg(test)]
@@ -90,5 +88,11 @@ mod tests {
         assert_eq!(ros_type("Plain"), "Plain");
         assert_eq!(RosName::of("rt/a\x1b[31m\nb"), RosName::Topic("/a\\u{1b}[31m\\nb".into()));
         assert_eq!(absolute("stress/"), "/stress");
+    }
+
+    #[test]
+    fn a_type_is_shown_without_what_a_terminal_obeys() {
+        assert_eq!(ros_type("a\x1b[31m::msg::dds_::B\n_"), r"a\u{1b}[31m/msg/B\n");
+        assert_eq!(ros_type("a\x1b[31m"), r"a\u{1b}[31m");
     }
 }

@@ -1,10 +1,9 @@
 //! Joins a domain and collects its graph.
 
 use crate::graph::{Endpoint, Graph, NodeEntry};
-use crate::names::printable;
-use grainlab_console::Failure;
+use grainlab_console::{Failure, escape_name};
 use grainlab_msgs::Guid;
-use grainlab_node_kit::{Network, OffTheBus};
+use grainlab_node_kit::{CROWDING_ADVICE, Network, OffTheBus, crowding};
 use ros2_client::qos::{Durability, History, Reliability, WhenFull};
 use ros2_client::{Context, MessageTypeName, Node, NodeName, NodeOptions, QosProfile, Subscription};
 use serde::{Deserialize, Serialize};
@@ -73,7 +72,23 @@ impl Observer {
     }
 
     /// The graph once it has what is asked for and has not changed for half a second; without it, as [`Observer::settled`].
+    /// Prints a line if participants are missing from it because the domain is full.
     pub(crate) fn with(&mut self, patience: Duration, is_there: impl Fn(&Graph) -> bool) -> Graph {
+        let graph = self.discovered(patience, is_there);
+        let crowding = self.crowding();
+        crowding
+            .iter()
+            .for_each(|sentence| grainlab_console::say!("grainlab: {sentence}: {CROWDING_ADVICE}"));
+        graph
+    }
+
+    /// A sentence about participants that are missing because the domain is full.
+    pub(crate) fn crowding(&self) -> Option<String> {
+        crowding(&self.context)
+    }
+
+    /// The graph as [`Observer::with`] returns it, without a line.
+    pub(crate) fn discovered(&mut self, patience: Duration, is_there: impl Fn(&Graph) -> bool) -> Graph {
         let start = Instant::now();
         let (mut seen, mut changed, mut is_found) = (self.fingerprint(), start, false);
         loop {
@@ -144,9 +159,26 @@ impl Observer {
 
 fn entries(participant: &ParticipantNodes) -> Vec<NodeEntry> {
     let entry = |node: &Entities| NodeEntry {
-        name: printable(&format!("{}/{}", node.namespace.trim_end_matches('/'), node.name)),
+        name: escape_name(&format!("{}/{}", node.namespace.trim_end_matches('/'), node.name)).into_owned(),
         participant: participant.gid,
         endpoints: node.readers.iter().chain(&node.writers).copied().collect(),
     };
     participant.nodes.iter().map(entry).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_name_of_a_node_is_shown_without_what_a_terminal_obeys() {
+        let node = Entities {
+            namespace: "/lab".into(),
+            name: "a\x1b[31m\nb".into(),
+            readers: Vec::new(),
+            writers: Vec::new(),
+        };
+        let found = entries(&ParticipantNodes { gid: Guid([1; 16]), nodes: vec![node] });
+        assert_eq!(found[0].name, r"/lab/a\u{1b}[31m\nb");
+    }
 }

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 /// Format of a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum OutputFormat {
+pub enum OutputFormat {
     /// Text for readers.
     #[default]
     Text,
@@ -28,9 +28,6 @@ pub struct Common {
     /// Time limit of discovery, which ends when the graph has not changed for 2 s
     #[arg(long, value_name = "S", default_value_t = 15.0, value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) spin_time: f64,
-    /// There is no daemon: accepted as `ros2` has it.
-    #[arg(long, hide = true)]
-    no_daemon: bool,
 }
 
 impl Common {
@@ -55,39 +52,6 @@ impl Common {
         text: impl FnOnce() -> String,
     ) -> Result<Exit, Failure> {
         shown(self.format, value, text)
-    }
-}
-
-/// The arguments of a list.
-#[derive(Clone, Copy, Debug, clap::Args)]
-pub struct Listing {
-    /// Print the types, and who has them
-    #[arg(short = 't', long, visible_alias = "show-types", short_alias = 'v', alias = "verbose")]
-    types: bool,
-    /// Print their number only
-    #[arg(short, long, aliases = ["count-topics", "count-services", "count-nodes"])]
-    count: bool,
-    /// List those, too, of which a part of the name begins with an underscore
-    #[arg(short = 'a', long, aliases = ["all", "include-hidden-topics", "include-hidden-services"])]
-    include_hidden: bool,
-    #[command(flatten)]
-    pub(crate) common: Common,
-}
-
-impl Listing {
-    /// Prints rows by their names, or as a table with the types.
-    pub(crate) fn print<T: Serialize>(
-        &self,
-        mut rows: Vec<T>,
-        name: impl Fn(&T) -> &str,
-        table: impl FnOnce(&[T]) -> String,
-    ) -> Result<Exit, Failure> {
-        rows.retain(|row| self.include_hidden || !name(row).split('/').any(|part| part.starts_with('_')));
-        if self.count {
-            return self.common.show(&rows.len(), || format!("{}\n", rows.len()));
-        }
-        let names = || rows.iter().map(|row| format!("{}\n", name(row))).collect();
-        self.common.show(&rows, || if self.types { table(&rows) } else { names() })
     }
 }
 

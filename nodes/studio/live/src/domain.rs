@@ -14,7 +14,6 @@ pub(crate) struct Choice {
 }
 
 impl Choice {
-    /// From the environment.
     pub(crate) fn from_env() -> Result<Self, Failure> {
         let is_set = std::env::var("ROS_DOMAIN_ID").is_ok_and(|v| !v.trim().is_empty());
         Ok(Self { network: Network::from_env().map_err(Failure::usage)?, is_set })

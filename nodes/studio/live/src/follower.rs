@@ -11,7 +11,6 @@ use grainlab_node_kit::{
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// Name of the node.
 pub(crate) const NODE: &str = "grainlab_live";
 
 /// Samples that may wait for this process.

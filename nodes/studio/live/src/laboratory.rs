@@ -24,7 +24,6 @@ const PHASE_WINDOW: u64 = 10;
 /// Most estimates that are kept of one packing.
 const ESTIMATES: usize = 64;
 
-/// End of the run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum End {
     /// The loading path is done.

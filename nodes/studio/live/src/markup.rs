@@ -151,10 +151,9 @@ impl Laboratory {
         }
         let names =
             [("G12", "shear across the axis"), ("G13", "shear along the axis"), ("Θ", "bulk modulus")];
-        let rows = names
-            .into_iter()
-            .zip(moduli(report))
-            .map(|((name, meaning), value)| [Cell::text(name), Cell::text(meaning), Cell::fixed(value, 2)]);
+        let rows = names.into_iter().zip(moduli(report)).map(|((name, meaning), value)| {
+            [Cell::text(name), Cell::text(meaning), Cell::three_digits(value, 2)]
+        });
         found + grid(inferred + table("Moduli", ["", "", "MPa"], rows))
     }
 }

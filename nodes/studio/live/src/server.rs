@@ -1,5 +1,6 @@
 //! HTTP on the loopback interface: the page, its events, the packings.
 
+use crate::connections::Connections;
 use crate::page::page;
 use crate::snapshot::Snapshot;
 use axum::Router;
@@ -11,15 +12,34 @@ use axum::response::{Html, IntoResponse, Response};
 use axum::routing::get;
 use futures::Stream;
 use grainlab_console::Failure;
+use hyper::server::conn::http1;
+use hyper::service::{Service, service_fn};
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
 use std::collections::VecDeque;
 use std::convert::Infallible;
+use std::io::ErrorKind;
 use std::net::{Ipv4Addr, TcpListener};
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::thread::JoinHandle;
+use std::time::Duration;
+use tokio::io::AsyncWriteExt;
+use tokio::net::TcpStream;
 use tokio::sync::{oneshot, watch};
+use tokio::task::JoinSet;
 
 /// Port that is tried first.
 pub const DEFAULT_PORT: u16 = 8808;
+
+/// Time for a request to arrive whole, and for which a connection is kept without one.
+const HEADER_TIMEOUT: Duration = Duration::from_secs(10);
+
+/// Time for a refused connection to send what it has begun to send.
+const REFUSAL_TIMEOUT: Duration = Duration::from_secs(1);
+
+/// Answer to a connection beyond the maximum.
+const FULL: &[u8] = b"HTTP/1.1 503 Service Unavailable\r\nConnection: close\r\n\r\nThe page has too many connections: close some of its windows.\n";
 
 /// Content that a browser may load: scripts and styles of the page itself, and data of this server.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src 'self' data: blob:; \
@@ -101,19 +121,67 @@ impl Drop for Server {
 
 async fn serve(listener: TcpListener, board: Board) -> std::io::Result<()> {
     let listener = tokio::net::TcpListener::from_std(listener)?;
+    let (mut connections, mut refused) = (Connections::default(), JoinSet::new());
     let router = Router::new()
         .route("/", get(async || Html(page())))
         .route("/events", get(events))
         .route("/packings", get(packings))
         .layer(from_fn(guard))
         .with_state(board);
-    axum::serve(listener, router).await
+    loop {
+        let stream = match listener.accept().await {
+            Ok((stream, _)) => stream,
+            // The process has no descriptor left; connections that end return theirs.
+            Err(error) if error.raw_os_error() == Some(libc::EMFILE) => {
+                tokio::time::sleep(HEADER_TIMEOUT).await;
+                continue;
+            }
+            // The other side has gone.
+            Err(error) if error.kind() == ErrorKind::ConnectionAborted => continue,
+            Err(error) => return Err(error),
+        };
+        if !connections.make_room().await {
+            while refused.try_join_next().is_some() {}
+            // More of them are closed without an answer.
+            if refused.len() < Connections::MAX {
+                refused.spawn(refuse(stream));
+            }
+            continue;
+        }
+        let service = TowerToHyperService::new(router.clone());
+        connections.serve(|asked| async move {
+            let service = service_fn(move |request| {
+                asked.store(true, Ordering::Relaxed);
+                service.call(request)
+            });
+            let mut http = http1::Builder::new();
+            http.timer(TokioTimer::new()).header_read_timeout(HEADER_TIMEOUT);
+            // A browser that breaks off is no fault of the page.
+            _ = http.serve_connection(TokioIo::new(stream), service).await;
+        });
+        // A request that has arrived is read before the next connection may need the place of this one.
+        tokio::task::yield_now().await;
+    }
+}
+
+/// Tells a browser that there is no room. What the browser sends is read, because closing a connection with unread bytes resets it, and
+/// the browser would not see the answer.
+async fn refuse(mut stream: TcpStream) {
+    let answered = async {
+        stream.write_all(FULL).await?;
+        stream.shutdown().await?;
+        tokio::io::copy(&mut stream, &mut tokio::io::sink()).await
+    };
+    // A browser that breaks off is no fault of the page.
+    _ = tokio::time::timeout(REFUSAL_TIMEOUT, answered).await;
 }
 
 /// Refuses requests under other names: a page of another site whose name was made to resolve to this host (DNS rebinding).
 async fn guard(request: Request, next: Next) -> Response {
-    let host = request.headers().get(header::HOST).and_then(|h| h.to_str().ok());
-    if !host.is_some_and(is_loopback) {
+    let mut hosts = request.headers().get_all(header::HOST).iter();
+    let host = hosts.next().and_then(|h| h.to_str().ok());
+    // A second name contradicts the first one (RFC 9112, 3.2).
+    if !host.is_some_and(is_loopback) || hosts.next().is_some() {
         let text = "This page is served to 127.0.0.1 and localhost only.\n";
         return (StatusCode::FORBIDDEN, text).into_response();
     }

@@ -1,9 +1,8 @@
-//! A table of typed columns, as CSV and as Parquet.
+//! A table of typed columns, as CSV.
 
 mod means;
-mod parquet;
 
-use grainlab_console::{Cell, CsvText, Failure};
+use grainlab_console::{Cell, CsvText};
 
 /// Rows with named columns.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -50,15 +49,6 @@ impl Dataset {
         text.row(&self.names);
         self.rows.iter().for_each(|row| text.row(row.iter().map(Cell::text)));
         text.finish()
-    }
-
-    /// Apache Parquet, one row group, not compressed. Every column is optional; its type is that of its values: DOUBLE,
-    /// INT64, BOOLEAN or STRING. The same rows give the same bytes.
-    ///
-    /// # Errors
-    /// If a column has values of several types.
-    pub fn parquet(&self) -> Result<Vec<u8>, Failure> {
-        parquet::write(&self.names, &self.rows)
     }
 }
 

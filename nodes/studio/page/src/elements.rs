@@ -41,6 +41,11 @@ impl Cell {
         Self::number(fixed(value, digits))
     }
 
+    /// A number with three significant digits or more, by [`three_digits`].
+    pub fn three_digits(value: impl Into<Option<f64>>, decimals: usize) -> Self {
+        Self::number(three_digits(value, decimals))
+    }
+
     /// A number with its sign, by [`signed`].
     pub fn signed(value: impl Into<Option<f64>>, digits: usize) -> Self {
         Self::number(signed(value, digits))
@@ -176,6 +181,11 @@ pub fn fixed(value: impl Into<Option<f64>>, digits: usize) -> String {
     finite(value, |v| format!("{v:.digits$}"))
 }
 
+/// A number as [`grainlab_console::three_digits`] writes it, with a true minus sign; without one `–`.
+pub fn three_digits(value: impl Into<Option<f64>>, decimals: usize) -> String {
+    finite(value, |v| grainlab_console::three_digits(Some(v), decimals))
+}
+
 /// A number with its sign, and none for zero; without one `–`.
 pub fn signed(value: impl Into<Option<f64>>, digits: usize) -> String {
     finite(value, |v| {
@@ -276,5 +286,11 @@ mod tests {
             assert!(text.contains(part), "{part}: {text:?}");
         }
         assert!(table("", ["x"], [[]; 0]).is_empty());
+    }
+
+    #[test]
+    fn small_numbers_keep_three_digits_with_a_true_minus() {
+        let all = [(112.4, "112.40"), (0.011_24, "0.0112"), (-0.011_24, "−0.0112"), (f64::NAN, "–")];
+        all.iter().for_each(|(value, text)| assert_eq!(three_digits(*value, 2), *text));
     }
 }

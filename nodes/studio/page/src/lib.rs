@@ -4,7 +4,7 @@
 //! - [`Html`], [`html!`]: markup, from texts and templates; [`table`], [`figure`], [`card`] and others: elements of pages
 //! - [`fixed`], [`signed`], [`six_digits`]: numbers for readers
 //! - [`plot`]: plots as SVG
-//! - [`Dataset`]: typed columns, as CSV and Parquet; [`Mean`]: a mean with its standard error; [`median`]
+//! - [`Dataset`]: typed columns, as CSV; [`Mean`]: a mean with its standard error; [`median`]
 
 #[macro_use]
 mod markup;
@@ -18,7 +18,7 @@ pub mod plot;
 pub use dataset::Dataset;
 pub use elements::{
     Cell, card, code, csv, data, details, figure, finding, fixed, grid, heading, lines, list, paragraph,
-    plus_minus, signed, six_digits, slug, table, verdict, with_unit,
+    plus_minus, signed, six_digits, slug, table, three_digits, verdict, with_unit,
 };
 pub use markup::Html;
 #[doc(hidden)]

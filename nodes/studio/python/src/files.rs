@@ -3,6 +3,7 @@
 use crate::arrays::numbers;
 use crate::error;
 use crate::packing::PyPacking;
+use crate::parallel;
 use grainlab_core::Mat3;
 use grainlab_recordings::import::{self, ImportOptions};
 use pyo3::exceptions::PyUserWarning;
@@ -40,14 +41,13 @@ pub(crate) fn load(
         topic,
         ..ImportOptions::default()
     };
-    let loaded = py.detach(|| import::load(&path, &options)).map_err(error::file)?;
+    let loaded = parallel::detach(py, move |_| import::load(&path, &options))?.map_err(error::file)?;
     for warning in &loaded.warnings {
         warn(py, &warning.to_string())?;
     }
     Ok(loaded.packings.into_iter().map(PyPacking::from).collect())
 }
 
-/// A warning of Python.
 pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
     let text = CString::new(text.replace('\0', " "))?;
     PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)

@@ -28,9 +28,12 @@ pub(crate) fn inverted<'py>(
     draws: Option<(usize, u64)>,
 ) -> PyResult<(Bound<'py, PyDict>, Option<Bound<'py, PyDict>>)> {
     let draws = draws.map(|(each, seed)| (posterior::CHAINS * each, seed));
-    let (model, calibration, prior, error) = &by;
-    let by = By { model, calibration, prior: prior.as_deref(), error: *error, draws };
-    let found = parallel::detach(py, || in_memory::invert(table, &by))?.map_err(error::failure)?;
+    let found = parallel::detach(py, move |stop| {
+        let (model, calibration, prior, error) = &by;
+        let by = By { model, calibration, prior: prior.as_deref(), error: *error, draws };
+        in_memory::invert(table, &by, stop)
+    });
+    let found = found?.map_err(error::failure)?;
     let drawn = found.draws.map(|draws| posterior::groups(py, &draws)).transpose()?;
     Ok((answers(py, &found.rows)?, drawn))
 }
@@ -38,10 +41,12 @@ pub(crate) fn inverted<'py>(
 fn answers<'py>(py: Python<'py>, rows: &[InvertedRow]) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     let numbers = |key: String, value: &dyn Fn(&Inference) -> Option<f64>| {
+        py.check_signals()?;
         let values: Vec<f64> = rows.iter().map(|row| value(&row.inference).unwrap_or(f64::NAN)).collect();
         dict.set_item(key, values.into_pyarray(py))
     };
     let texts = |key: &str, value: &dyn Fn(&InvertedRow) -> String| {
+        py.check_signals()?;
         dict.set_item(key, rows.iter().map(value).collect::<Vec<_>>())
     };
     if rows.iter().any(|row| row.sample.is_some()) {
@@ -61,6 +66,7 @@ fn answers<'py>(py: Python<'py>, rows: &[InvertedRow]) -> PyResult<Bound<'py, Py
     texts("status", &|row| row.inference.status.to_owned())?;
     texts("reason", &|row| row.inference.warnings.join("; "))?;
     dict.set_item("warnings", rows.iter().map(|row| row.inference.warnings.clone()).collect::<Vec<_>>())?;
+    dict.set_item("contradictions", rows.iter().map(|row| row.contradictions.clone()).collect::<Vec<_>>())?;
     dict.set_item("failed", rows.iter().map(|row| row.failed.map_or(0, Exit::code)).collect::<Vec<_>>())?;
     Ok(dict)
 }

@@ -50,5 +50,14 @@ fn _grainlab(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(simulate::scene, module)?)?;
     module.add_function(wrap_pyfunction!(simulate::scenes_built_in, module)?)?;
     module.add_function(wrap_pyfunction!(program::run, module)?)?;
+    array_interface(module.py())?;
     error::add(module)
+}
+
+/// Loads the C interface of numpy. At its first use it would be loaded by Python code, which a signal may interrupt: the crate numpy then panics.
+fn array_interface(py: Python<'_>) -> PyResult<()> {
+    py.import("numpy")?;
+    // Modules that are imported run no Python code, and so no handler of a signal.
+    numpy::PyArray1::<f64>::zeros(py, 0, false);
+    Ok(())
 }

@@ -8,8 +8,8 @@ use crate::values;
 use grainlab_command::in_memory;
 use grainlab_core::Vec3;
 use grainlab_core::results::QUANTITIES;
-use grainlab_micromechanics::network::{SpringNetwork, Springs, relaxed_stiffness};
-use grainlab_micromechanics::{PackingView, Settings, analyze as measure};
+use grainlab_micromechanics::network::Springs;
+use grainlab_micromechanics::{Settings, analyze as measure};
 use grainlab_recordings::import::Imported;
 use grainlab_results::MeasuredPacking;
 use numpy::PyArray2;
@@ -48,10 +48,12 @@ pub(crate) fn analyze_one<'py>(
     tolerance: Option<f64>,
 ) -> PyResult<(Bound<'py, PyDict>, Vec<String>)> {
     let settings = settings(Some(&axis), springs, tolerance)?;
+    let owner = packing.clone().unbind();
+    let found =
+        parallel::detach(py, move |_| measure(owner.get().packing(), &settings))?.map_err(error::physics)?;
     let (packing, position) = (packing.get().packing(), packing.get().position());
-    let found = py.detach(|| measure(packing, &settings)).map_err(error::physics)?;
+    let without = found.why_no_stiffness();
     let found = MeasuredPacking::new(String::new(), found.report).at(position).doubted(packing, &[]);
-    let without = found.report.elasticity.as_ref().err().map(ToString::to_string);
     let doubts = found.warnings.iter().cloned().chain(without).collect();
     Ok((values::quantities(py, QUANTITIES, &found.report)?, doubts))
 }
@@ -66,7 +68,7 @@ pub(crate) fn analyze_all(
     tolerance: Option<f64>,
 ) -> PyResult<String> {
     let settings = settings(Some(&axis), springs, tolerance)?;
-    parallel::detach(py, || values::csv(&in_memory::analyze(&settings, &imported(&packings))))
+    parallel::detach(py, move |stop| values::csv(&in_memory::analyze(&settings, &imported(&packings), stop)))
 }
 
 /// The text of `grainlab probe --format csv`, a row for each packing, with its status and reason; and the JSON of the first, if it has any.
@@ -76,8 +78,8 @@ pub(crate) fn probe_all(
     packings: Vec<Py<PyPacking>>,
     flags: Vec<(String, String)>,
 ) -> PyResult<(String, Option<String>)> {
-    let found =
-        parallel::detach(py, || in_memory::probe(&flags, &imported(&packings)))?.map_err(error::failure)?;
+    let found = parallel::detach(py, move |stop| in_memory::probe(&flags, &imported(&packings), stop))?
+        .map_err(error::failure)?;
     let first = found.first().and_then(|result| result.as_ref().ok());
     Ok((values::csv(&found), first.and_then(|(found, _)| serde_json::to_string(found).ok())))
 }
@@ -111,15 +113,19 @@ pub(crate) fn stiffness<'py>(
     tolerance: Option<f64>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let settings = settings(None, springs, tolerance)?;
-    let packing = packing.get().packing();
-    let solve = || {
-        let network = SpringNetwork::new(&PackingView::new(packing)?, settings.springs)?;
-        relaxed_stiffness(&network, settings.tolerance_for(packing.grains())?, settings.max_iterations)
-    };
-    let found = py.detach(solve).map_err(error::physics)?;
+    let owner = packing.clone().unbind();
     let found =
-        found.ok_or_else(|| error::physics("the packing is not jammed: its network has no stiffness"))?;
-    let c = if affine { found.affine } else { found.relaxed };
+        parallel::detach(py, move |_| measure(owner.get().packing(), &settings))?.map_err(error::physics)?;
+    let c = match &found.report.elasticity {
+        Ok(found) => {
+            if affine {
+                found.bounds.affine
+            } else {
+                found.tensor
+            }
+        }
+        Err(why) => return Err(error::physics(found.why_no_stiffness().unwrap_or_else(|| why.to_string()))),
+    };
     Ok(matrix(py, 6, |i, j| c.0[(i, j)]))
 }
 

@@ -12,6 +12,7 @@ use numpy::{Ix1, Ix2, PyArray, PyArray1, PyArray2, ToPyArray};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
+use std::sync::atomic::AtomicBool;
 
 /// A packing of spheres in a periodic cell, which never changes. ``len(packing)`` is the number of grains n; m is that of contacts. SI units.
 ///
@@ -35,7 +36,7 @@ type Array<'py, T, D> = Bound<'py, PyArray<T, D>>;
 impl PyPacking {
     pub(crate) fn new(packing: Packing, source: String, notes: Vec<String>, run_state: Vec<u8>) -> Self {
         let (header, step) = (packing_header(&packing), packing.step);
-        Imported { packing, header, step, run_state, source, notes }.into()
+        Imported { packing, header, step, run_state, source, rounding: None, notes }.into()
     }
 
     pub(crate) fn position(&self) -> Option<PathPosition> {
@@ -119,18 +120,19 @@ impl PyPacking {
     }
 
     /// The packing as pixels: the bytes of a PNG.
-    fn _png<'py>(&self, py: Python<'py>, color: &str, size: &str) -> PyResult<Bound<'py, PyBytes>> {
+    fn _png<'py>(slf: &Bound<'py, Self>, color: &str, size: &str) -> PyResult<Bound<'py, PyBytes>> {
         let known = Quantity::ALL.map(Quantity::name);
         let color = Quantity::ALL.into_iter().find(|quantity| quantity.name() == color);
         let color = color
             .ok_or_else(|| PyValueError::new_err(format!("color must be one of: {}", known.join(", "))))?;
         let size: Size = size.parse().map_err(refused)?;
-        let drawn = parallel::detach(py, || Picture::new(&self.view(), color, size, Ground::Light).png())?;
-        Ok(PyBytes::new(py, &drawn.map_err(refused)?))
+        let (py, owner) = (slf.py(), slf.clone().unbind());
+        let draw = move |_: &AtomicBool| Picture::new(&owner.get().view(), color, size, Ground::Light).png();
+        Ok(PyBytes::new(py, &parallel::detach(py, draw)?.map_err(refused)?))
     }
 
-    fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        self._png(py, Quantity::default().name(), "600x450")
+    fn _repr_png_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyBytes>> {
+        Self::_png(slf, Quantity::default().name(), "600x450")
     }
 
     fn __len__(&self) -> usize {

@@ -6,7 +6,7 @@ use crate::packing::PyPacking;
 use crate::values;
 use grainlab_any_message::Schema;
 use grainlab_recordings::import::recording::packing;
-use grainlab_recordings::{ChannelInfo, Messages, Recording, Selection};
+use grainlab_recordings::{ChannelInfo, Messages, Recording, Selection, Warning, WarningKind, input};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -31,8 +31,20 @@ impl Stream {
         Self::try_new(recording.clone(), |recording| recording.messages(&selection)).map_err(error::file)
     }
 
-    fn next(&mut self) -> Option<grainlab_recordings::Message> {
-        self.with_dependent_mut(|_, messages| messages.next())
+    /// Returns the next message, and damage by which messages may be missing as the last item.
+    fn next(&mut self) -> PyResult<Option<grainlab_recordings::Message>> {
+        match self.with_dependent_mut(|_, messages| messages.next()) {
+            None => self.whole().map(|()| None),
+            message => Ok(message),
+        }
+    }
+
+    /// Raises FileError if damage was met, by which the number of a message is not its place in the recording.
+    fn whole(&self) -> PyResult<()> {
+        match self.with_dependent(|_, messages| messages.damage().map(ToString::to_string)) {
+            Some(damage) => Err(error::file(format!("messages may be missing: {damage}"))),
+            None => Ok(()),
+        }
     }
 }
 
@@ -97,7 +109,7 @@ impl PyRecording {
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let path = self.recording.path().join("summary.json");
         let text =
-            std::fs::read_to_string(&path).map_err(|e| error::file(format!("{}: {e}", path.display())))?;
+            input::text(&path, input::TEXT).map_err(|e| error::file(format!("{}: {e}", path.display())))?;
         py.import("json")?.call_method1("loads", (text,))
     }
 
@@ -124,10 +136,22 @@ impl PyRecording {
         Ok(PackingIterator(Mutex::new(Stream::of(&self.recording, Some(vec![topic.to_owned()]))?)))
     }
 
-    /// Last packing of the topic. Raises IndexError if it has none.
+    /// Last packing of the topic. Raises IndexError if it has none, and FileError for damage.
     #[pyo3(signature = (topic="packing"))]
     fn last_packing(&self, py: Python<'_>, topic: &str) -> PyResult<PyPacking> {
         let message = py.detach(|| self.recording.last(topic)).map_err(error::file)?;
+        let hides = |w: &Warning| {
+            matches!(
+                w.kind,
+                WarningKind::DamagedChunk
+                    | WarningKind::DamagedRecord
+                    | WarningKind::Orphans
+                    | WarningKind::AfterEnd
+            )
+        };
+        if let Some(damage) = self.recording.warnings().iter().find(|w| hides(w)) {
+            return Err(error::file(format!("later packings may be missing: {damage}")));
+        }
         let message = message.ok_or_else(|| PyIndexError::new_err("the recording has no packing"))?;
         Ok(packing(&message).map_err(error::file)?.into())
     }
@@ -150,15 +174,25 @@ impl PackingIterator {
         slf
     }
 
-    /// Passes over this number of packings, which are not decoded.
-    fn skip(&self, py: Python<'_>, number: usize) {
-        let next = |_| self.0.lock().unwrap_or_else(PoisonError::into_inner).next();
-        py.detach(|| (0..number).map_while(next).for_each(drop));
+    /// The packing after the next ``passed`` ones, which are not decoded. Raises FileError for damage before it, which would shift its
+    /// number, and if there is none.
+    fn after(&self, py: Python<'_>, passed: usize) -> PyResult<PyPacking> {
+        let message = py.detach(|| {
+            let mut stream = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            for _ in 0..passed {
+                stream.next()?;
+            }
+            let message = stream.next()?;
+            stream.whole().map(|()| message)
+        })?;
+        let missing = || error::file("the recording holds fewer packings than it states");
+        Ok(packing(&message.ok_or_else(missing)?).map_err(error::file)?.into())
     }
 
     fn __next__(&self, py: Python<'_>) -> PyResult<Option<PyPacking>> {
-        let next = || self.0.lock().unwrap_or_else(PoisonError::into_inner).next().map(|m| packing(&m));
-        Ok(py.detach(next).transpose().map_err(error::file)?.map(PyPacking::from))
+        let next = || self.0.lock().unwrap_or_else(PoisonError::into_inner).next();
+        let message = py.detach(next)?;
+        Ok(message.map(|m| packing(&m)).transpose().map_err(error::file)?.map(PyPacking::from))
     }
 }
 
@@ -170,7 +204,7 @@ struct Decoder {
 impl Decoder {
     /// The next message and the schema to decode it by.
     fn next(&mut self) -> PyResult<Option<(grainlab_recordings::Message, Arc<Schema>)>> {
-        let Some(message) = self.stream.next() else { return Ok(None) };
+        let Some(message) = self.stream.next()? else { return Ok(None) };
         let schema = match self.schemas.get(&message.channel.topic) {
             Some(schema) => schema.clone(),
             None => {

@@ -14,7 +14,7 @@ STATE = dict(
 
 
 def test_draws_have_the_moments_of_the_estimate_and_a_seed_repeats_them():
-    found = grainlab.invert(**STATE, draws=500, seed=3)
+    found = grainlab.invert(**STATE, error=0.01, draws=500, seed=3)
     draws = found["draws"]
     for key in ["k", "z", "eps", "eps_stiffness"]:
         values = draws["posterior"][key]
@@ -22,7 +22,7 @@ def test_draws_have_the_moments_of_the_estimate_and_a_seed_repeats_them():
         assert abs(values.mean() - found[key]) < 0.3 * found[f"{key}_sigma"]
     assert draws["coords"]["modulus"] == ["G12", "G13", "Theta"]
     assert draws["log_likelihood"]["moduli"].shape == draws["posterior_predictive"]["moduli"].shape == (4, 500, 3)
-    again = grainlab.invert(**STATE, draws=500, seed=3)["draws"]
+    again = grainlab.invert(**STATE, error=0.01, draws=500, seed=3)["draws"]
     assert np.array_equal(again["posterior"]["z"], draws["posterior"]["z"])
 
 
@@ -37,7 +37,7 @@ def test_draws_that_scatter_otherwise_than_the_estimate_are_a_warning():
 
 def test_a_narrow_prior_is_the_estimate_and_wrong_ones_raise():
     prior = '[z]\ndistribution = "normal"\nmean = 4.8\nstddev = 1e-6\n'
-    assert abs(grainlab.invert(**STATE, prior=prior)["z"] - 4.8) < 1e-5
+    assert abs(grainlab.invert(**STATE, error=0.01, prior=prior)["z"] - 4.8) < 1e-5
     for text, match in [
         ("[z]\n", "distribution"),
         ('[z]\ndistribution = "uniform"\nlow = 8\nhigh = 9\n', "domain"),

@@ -1,5 +1,7 @@
 """Tables in and out of the inversion."""
 
+import json
+
 import grainlab
 import numpy as np
 import pytest
@@ -18,10 +20,26 @@ def test_a_row_of_an_array_has_the_numbers_of_the_state_alone():
         assert (alone["z"], alone["z_sigma"], alone["z_interval"]) == (found["z"][n], found["z_sigma"][n], (found["z_low"][n], found["z_high"][n]))
 
 
+def test_a_state_without_errors_has_the_numbers_of_the_command_line():
+    found = grainlab.invert(**STATE)
+    words = [f"--{name}={value}" for name, value in STATE.items()]
+    (answer,) = json.loads(grainlab.command("invert", *words, "--model=relaxed", "--format=json"))["results"]
+    assert (found["z"], found["z_sigma"], found["warnings"]) == (answer["z"], answer["sigma"]["z"], answer["warnings"])
+    assert any("the errors of the moduli are not known" in text for text in found["warnings"])
+
+
 def test_a_row_without_an_answer_is_nan_with_its_reason():
     found = grainlab.invert(**{**STATE, "pressure": [50e3, np.nan, -1, np.inf, 50e3], "g12": [104.2e6, 1e8, 1e8, 1e8, 0]})
     assert list(found["status"]) == ["ok"] + 4 * ["unknown"] and np.isnan(found["z"][1:]).all()
     assert all(found["reason"]) and "pressure_pa is empty" in found["reason"][1]
+
+
+def test_whole_numbers_of_a_table_stay_whole():
+    from grainlab.tables import parsed
+
+    found = parsed("seed,step,k,contacts,mixed\n9007199254740993,12,4.5,3,1\n-2,13,5,,x\n")
+    assert found["seed"].tolist() == [9007199254740993, -2] and found["step"].dtype.kind == "i"
+    assert found["k"].dtype.kind == "f" and np.isnan(found["contacts"][1]) and list(found["mixed"]) == ["1", "x"]
 
 
 def test_what_a_mask_hides_is_not_known():

@@ -48,7 +48,6 @@ struct Plot {
 }
 
 impl Timeline {
-    /// All plots against time.
     pub(crate) fn against_time(&self) -> Html {
         if self.pressure.count() == 0 {
             return paragraph("The recording has no stress against time.");

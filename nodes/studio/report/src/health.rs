@@ -75,7 +75,8 @@ impl Run {
         let again = self.launched.as_ref().map(|words| {
             let words: String =
                 words.iter().map(|w| format!("{} ", grainlab_results::brief::quoted(w))).collect();
-            format!("grainlab launch {words}--scene {scene}{seed}    # the same run: the same bytes")
+            let same = self.another.as_deref().unwrap_or("the same run: the same bytes");
+            format!("grainlab launch {words}--scene {scene}{seed}    # {}", same.replace('\n', " "))
         });
         let commands = [
             again.unwrap_or_else(|| "# how it was launched is not recorded".to_owned()),

@@ -206,10 +206,10 @@ impl Run {
             let unknown = if s.results.is_empty() { "" } else { "unknown" };
             let which = best.and_then(|b| b.origin.measurement.as_ref()).map(|m| format!(", {}", m.label));
             let by = best.map_or_else(|| unknown.to_owned(), model) + &which.unwrap_or_default();
-            [Cell::text(phase), Cell::fixed(r.pressure() / 1e3, 2), Cell::fixed(r.solid_fraction, 4)]
+            [Cell::text(phase), Cell::three_digits(r.pressure() / 1e3, 2), Cell::fixed(r.solid_fraction, 4)]
                 .into_iter()
                 .chain(InferredQuantity::countable().map(|q| Cell::fixed(r.counted(q), q.digits())))
-                .chain(moduli(r).map(|m| Cell::fixed(m, 2)))
+                .chain(moduli(r).map(|m| Cell::three_digits(m, 2)))
                 .chain(of_best(best, by))
                 .collect::<Vec<_>>()
         };

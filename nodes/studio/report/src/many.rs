@@ -5,22 +5,54 @@ use crate::over_settings::{OverSettings, Quantities, strips};
 use crate::page::STYLE;
 use crate::run::Run;
 use crate::settings::{Setting, differing, keys};
-use grainlab_console::{CsvText, and, count};
+use grainlab_console::{CsvText, and, count, decimals_of};
 use grainlab_core::results::InferredQuantity;
 use grainlab_page::{
     Cell, Html, Page, Section, data, finding, fixed, grid, heading, html, paragraph, six_digits, table,
+    three_digits,
 };
 use grainlab_results::brief::{ended, moduli};
 use grainlab_results::findings::{Findings, recommended};
 use grainlab_results::read_back::InvertedPacking;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A number of a run: header, decimal places, and value.
-type Number = (String, usize, Option<f64>);
+/// A number of a run: header, form, and value.
+type Number = (String, Form, Option<f64>);
+
+/// How a number is written.
+#[derive(Clone, Copy)]
+enum Form {
+    /// With this number of decimal places.
+    Fixed(usize),
+    /// With this number of decimal places, or three significant digits.
+    Significant(usize),
+    /// With two significant digits and a power of ten.
+    Order,
+}
+
+impl Form {
+    fn cell(self, value: f64) -> Cell {
+        match self {
+            Self::Fixed(digits) => Cell::fixed(value, digits),
+            Self::Significant(digits) => Cell::three_digits(value, digits),
+            Self::Order => Cell::number(format!("{value:.1e}")),
+        }
+    }
+
+    /// The cell of `y` minus `x`, with the decimal places of these.
+    fn difference(self, x: f64, y: f64) -> Cell {
+        match self {
+            Self::Fixed(digits) => Cell::signed(y - x, digits),
+            Self::Significant(digits) => Cell::signed(y - x, decimals_of(x.abs().max(y.abs()), digits)),
+            Self::Order => self.cell(y - x),
+        }
+    }
+}
 
 /// Numbers of a run, of its last packing first.
 fn numbers(run: &Run) -> Vec<Number> {
-    let number = |name: &str, digits: usize, value: Option<f64>| (name.to_owned(), digits, value);
+    let number = |name: &str, form: Form, value: Option<f64>| (name.to_owned(), form, value);
+    let (fixed, significant) = (Form::Fixed, Form::Significant);
     let report = run.last().map(|state| &state.packing.report);
     let best = run.last().and_then(recommended);
     let counted = |q: InferredQuantity| report.and_then(|r| r.counted(q));
@@ -28,17 +60,17 @@ fn numbers(run: &Run) -> Vec<Number> {
     let moduli = ["G12, MPa", "G13, MPa", "Θ, MPa"].into_iter().zip(report.map_or([None; 3], moduli));
     let lost = (!run.summary.topics.is_empty()).then(|| run.summary.total(|t| t.lost) as f64);
     let mut all = vec![
-        number("p, kPa", 2, report.map(|r| r.pressure() / 1e3)),
-        number("φ", 4, report.map(|r| r.solid_fraction)),
+        number("p, kPa", significant(2), report.map(|r| r.pressure() / 1e3)),
+        number("φ", fixed(4), report.map(|r| r.solid_fraction)),
     ];
-    all.extend(InferredQuantity::countable().map(|q| number(q.symbol(), q.digits(), counted(q))));
-    all.extend(moduli.map(|(name, value)| number(name, 2, value)));
+    all.extend(InferredQuantity::countable().map(|q| number(q.symbol(), fixed(q.digits()), counted(q))));
+    all.extend(moduli.map(|(name, value)| number(name, significant(2), value)));
     let errors = InferredQuantity::countable();
-    all.extend(errors.map(|q| number(&format!("error of {}", q.symbol()), q.digits(), error(q))));
+    all.extend(errors.map(|q| number(&format!("error of {}", q.symbol()), fixed(q.digits()), error(q))));
     all.extend([
-        number("unbalanced", 9, report.and_then(|r| r.unbalanced_force_ratio)),
-        number("wall, s", 1, run.summary.wall_seconds),
-        number("lost", 0, lost),
+        number("unbalanced", Form::Order, report.and_then(|r| r.unbalanced_force_ratio)),
+        number("wall, s", fixed(1), run.summary.wall_seconds),
+        number("lost", fixed(0), lost),
     ]);
     all
 }
@@ -102,16 +134,12 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         let mut line = vec![no.to_string(), name, scene.clone(), seed];
         line.extend(varied.iter().map(|s| s.values[n].clone()));
         line.push(end);
-        for ((name, digits, value), outliers) in numbers(run).iter().zip(&distributions[&settings(run)]) {
+        for ((_, form, value), outliers) in numbers(run).iter().zip(&distributions[&settings(run)]) {
             line.push(value.map(six_digits).unwrap_or_default());
             row.push(value.map_or_else(
                 || Cell::number(""),
                 |v| {
-                    let cell = match name.as_str() {
-                        "unbalanced" => Cell::number(format!("{v:.1e}")),
-                        _ => Cell::fixed(v, *digits),
-                    };
-                    let cell = cell.sorted_by(v);
+                    let cell = form.cell(v).sorted_by(v);
                     let Some(score) = outliers.filter(|o| o.has(v)).map(|o| o.score(v)) else { return cell };
                     marked += 1;
                     cell.noted(
@@ -170,7 +198,7 @@ pub fn overview(runs: &[(Run, String)]) -> String {
     let lasts: Vec<&InvertedPacking> = runs.iter().filter_map(|(run, _)| run.last()).collect();
     let pressures = lasts.iter().map(|s| s.packing.report.pressure() / 1e3);
     let [low, high] = pressures.fold([f64::INFINITY, 0.0], |[l, h], p| [p.min(l), p.max(h)]);
-    let [low, high] = [low, high].map(|p| format!("{p:.1}"));
+    let [low, high] = [low, high].map(|p| three_digits(p, 1));
     let at = if low == high { low } else { format!("{low} to {high}") };
     let only_last = match runs.iter().any(|(run, _)| run.states.len() > 1) {
         true => format!(" Of each run the last state counts here, at {at} kPa; its own page has all."),
@@ -208,14 +236,11 @@ pub fn overview(runs: &[(Run, String)]) -> String {
 /// The numbers of two runs beside each other.
 fn side_by_side(pair: [&Run; 2]) -> Html {
     let [a, b] = pair.map(numbers);
-    let rows = a.into_iter().zip(b).map(|((name, digits, x), (_, _, y))| {
-        let difference = x.zip(y).map(|(x, y)| y - x);
-        let cells = match name.as_str() {
-            "unbalanced" => {
-                [x, y, difference].map(|v| Cell::number(v.map(|v| format!("{v:.1e}")).unwrap_or_default()))
-            }
-            _ => [Cell::fixed(x, digits), Cell::fixed(y, digits), Cell::signed(difference, digits)],
-        };
+    let rows = a.into_iter().zip(b).map(|((name, form, x), (_, _, y))| {
+        let none = || Cell::number("–");
+        let difference = x.zip(y).map(|(x, y)| form.difference(x, y));
+        let cells = [x.map(|x| form.cell(x)), y.map(|y| form.cell(y)), difference];
+        let cells = cells.map(|cell| cell.unwrap_or_else(none));
         std::iter::once(Cell::text(name)).chain(cells)
     });
     let [first, second] = pair.map(Run::name);
@@ -229,4 +254,19 @@ fn side_by_side(pair: [&Run; 2]) -> Html {
     let tables = table("Settings", header("setting"), settings)
         + table("Numbers", header("quantity").into_iter().chain(["difference".to_owned()]), rows);
     grid(tables)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_numbers_and_their_differences_keep_their_digits_side_by_side() {
+        let form = Form::Significant(2);
+        let cells = [form.cell(0.011_24), form.cell(0.012_36), form.difference(0.011_24, 0.012_36)];
+        let text = table("", ["first", "second", "difference"], [cells]);
+        for part in [">0.0112<", ">0.0124<", ">+0.0011<"] {
+            assert!(text.contains(part), "{part}: {text:?}");
+        }
+    }
 }

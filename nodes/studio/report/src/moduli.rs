@@ -3,7 +3,7 @@
 use crate::run::Run;
 use grainlab_core::Stiffness;
 use grainlab_page::plot::{Axis, Bar, Bars, Figure, Line, Marker, Point, Series};
-use grainlab_page::{Cell, Html, csv, figure, grid, paragraph, six_digits, table};
+use grainlab_page::{Cell, Html, csv, figure, grid, paragraph, six_digits, table, three_digits};
 use grainlab_results::brief::moduli;
 use grainlab_results::read_back::InvertedPacking;
 
@@ -44,7 +44,7 @@ impl Run {
                 name: NAMES[n].to_owned(),
                 colour: *colour,
                 value: values[n],
-                text: format!("{:.1} {kind}", values[n]),
+                text: format!("{} {kind}", three_digits(values[n], 1)),
             })
         });
         let plot = Bars { title: "Moduli, MPa".into(), bars: bars.collect() };
@@ -56,7 +56,7 @@ impl Run {
             }),
         );
         let rows = (0..NAMES.len()).map(of).map(|(name, [relaxed, rotation, affine])| {
-            let [r, m, a] = [relaxed, rotation, affine].map(|v| Cell::fixed(v, 2));
+            let [r, m, a] = [relaxed, rotation, affine].map(|v| Cell::three_digits(v, 2));
             [Cell::text(name), r, m, a, Cell::fixed(relaxed / affine, 3)]
         });
         let caption = format!(

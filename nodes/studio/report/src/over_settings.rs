@@ -205,7 +205,7 @@ fn change(of: &str, along: &Setting, [(from, a), (to, b)]: [(f64, Mean); 2], pai
             a.count, b.count
         ),
         (Some(false), None) => {
-            format!("{of} does not change beyond its scatter: it is {first} and {second}.")
+            format!("{of} is not shown to change: it is {first} and {second}.")
         }
     }
 }
@@ -274,7 +274,7 @@ mod tests {
             two.ends_with("11 standard errors apart, but 2 and 2 runs are too few to exclude chance."),
             "{two}"
         );
-        assert!(said(&[5.0, 5.2, 5.1], &[5.1, 5.0, 5.2]).contains("does not change beyond its scatter"));
+        assert!(said(&[5.0, 5.2, 5.1], &[5.1, 5.0, 5.2]).contains("is not shown to change"));
         assert!(said(&[5.0], &[4.0]).ends_with("with a single run at each: the scatter is not known."));
         let ends = [(1.0, mean(&[6.5, 5.0, 5.6])), (29.0, mean(&[5.9, 4.4, 5.02]))];
         let same = change("z", &of("G", ""), ends, Some(mean(&[-0.6, -0.6, -0.58])));

@@ -5,7 +5,8 @@ use crate::run::Run;
 use grainlab_console::count;
 use grainlab_core::results::InferredQuantity;
 use grainlab_page::{
-    Html, Page, Section, card, finding, fixed, heading, html, list, paragraph, verdict, with_unit,
+    Html, Page, Section, card, finding, fixed, heading, html, list, paragraph, three_digits, verdict,
+    with_unit,
 };
 use grainlab_results::brief::{ended, lost_words, moduli};
 use grainlab_results::findings::{Findings, Judged, recommended};
@@ -116,8 +117,9 @@ impl Run {
             (Some(s), _) => {
                 let pressures = self.states.iter().map(|s| s.packing.report.pressure() / 1e3);
                 let [low, high] = pressures.fold([f64::INFINITY, 0.0], |[l, h], p| [p.min(l), p.max(h)]);
-                let range = if high - low < 0.01 { String::new() } else { format!("{low:.2} to ") };
-                format!("{scene}: {} grains at {range}{high:.2} kPa", s.packing.report.contacts.grains)
+                let [low, high] = [low, high].map(|p| three_digits(p, 2));
+                let range = if low == high { String::new() } else { format!("{low} to ") };
+                format!("{scene}: {} grains at {range}{high} kPa", s.packing.report.contacts.grains)
             }
             (None, Some(packing)) => format!("{scene}: {} grains, not measured", packing.grains()),
             (None, None) => format!("{scene}: no packing"),
@@ -171,14 +173,14 @@ fn cards(state: &InvertedPacking) -> Html {
     };
     let counted = InferredQuantity::countable()
         .map(|q| card(q.symbol(), fixed(r.counted(q), q.digits()), q.meaning(), inferred(q)));
-    let [g12, g13, theta] = moduli(r).map(|m| fixed(m, 2));
+    let [g12, g13, theta] = moduli(r).map(|m| three_digits(m, 2));
     let ratio = r.stress_ratio().map_or_else(String::new, |q| format!("q/p {q:.1e}"));
     let unbalanced =
         r.unbalanced_force_ratio.map_or_else(String::new, |u| format!("unbalanced force {u:.1e}"));
     let measured = [
         card("G12, G13", with_unit(format!("{g12}, {g13}"), "MPa"), "shear across and along the axis", ""),
         card("Θ", with_unit(theta, "MPa"), "bulk modulus", ""),
-        card("p", with_unit(fixed(r.pressure() / 1e3, 2), "kPa"), "pressure", ratio),
+        card("p", with_unit(three_digits(r.pressure() / 1e3, 2), "kPa"), "pressure", ratio),
         card("φ", fixed(r.solid_fraction, 4), "solid fraction", unbalanced),
     ];
     html!("<div class=\"cards\">\n{{ cards }}</div>\n", cards => counted.chain(measured).collect::<Html>())

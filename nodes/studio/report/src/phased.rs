@@ -35,7 +35,6 @@ impl Phased {
         }
     }
 
-    /// Number of values.
     pub(crate) fn count(&self) -> usize {
         self.parts.iter().map(|(_, part)| part.count()).sum()
     }

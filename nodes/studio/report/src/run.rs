@@ -2,7 +2,7 @@
 
 use crate::summary_file::SummaryFile;
 use crate::timeline::Timeline;
-use grainlab_recordings::{METADATA_RECORD, Recording, SeveralRuns, input};
+use grainlab_recordings::{METADATA_RECORD, Recording, SeveralRuns, input, scenes};
 use grainlab_results::Inference;
 use grainlab_results::read_back::{self, InvertedPacking};
 use grainlab_scene::Scene;
@@ -15,7 +15,6 @@ const NO_SUMMARY: &str = "No summary";
 /// A run with its files.
 #[derive(Debug, Default)]
 pub struct Run {
-    /// Directory of the run.
     pub(crate) directory: PathBuf,
     pub(crate) summary: SummaryFile,
     /// Packings at the ends of phases, with what was inferred.
@@ -30,9 +29,11 @@ pub struct Run {
     pub(crate) scene: Option<Scene>,
     /// Launch file and arguments, as they are typed; `None` for a run that was started by hand.
     pub(crate) launched: Option<Vec<String>>,
+    /// Why a launch with the scene in the directory is not known to be the same run.
+    pub(crate) another: Option<String>,
     /// Program that wrote the recording, if it says so.
     pub(crate) recorded_by: Option<String>,
-    /// Files whose recorder was killed, and left no count of lost messages.
+    /// Files whose recorder ended early, and did not count all lost messages.
     pub(crate) uncounted_files: usize,
     /// It is unknown which messages of the recording are right; the lines are in the summary or in `missing`.
     disputed: bool,
@@ -92,18 +93,42 @@ impl Run {
     /// The scene: that stored in the recording, else the file beside it.
     fn read_scene(&mut self, recording: Option<&Recording>, path: &Path) {
         let stored = recording.and_then(|r| r.stored_files().into_iter().find(|f| f.name == "scene.toml"));
+        let is_stored = stored.is_some();
         match (stored, input::text(path, input::SETTINGS)) {
             (Some(file), _) => self.scene_text = String::from_utf8_lossy(&file.bytes).into_owned(),
             (None, Ok(text)) => self.scene_text = text,
             (None, Err(error)) => self.missing.push(format!("No scene: scene.toml: {error}")),
         }
         self.scene = Scene::parse(&self.scene_text).ok();
+        self.another = match scenes::read(&path.to_string_lossy(), &[], self.seed()) {
+            _ if !is_stored => {
+                Some("the recording has no scene that shows whether this is the same run".to_owned())
+            }
+            Err(error) => Some(format!("this does not run: {error}")),
+            Ok(scene) if scene.text != self.scene_text => {
+                Some("another run: scene.toml is not the scene that the recording began with".to_owned())
+            }
+            Ok(_) => None,
+        };
+    }
+
+    /// Names a seed of the summary that is not the one of the recorded scene.
+    fn check_seed(&mut self) {
+        if let (Some(scene), Some(seed)) = (&self.scene, self.summary.seed)
+            && scene.seed != seed
+        {
+            self.missing.push(format!(
+                "summary.json states the seed {seed}, and the recorded scene the seed {}: the page has the recorded one",
+                scene.seed
+            ));
+        }
     }
 
     fn read_recording(&mut self, recording: &Recording) {
         self.recorded_by = Some(recording.info().library).filter(|by| !by.is_empty());
         self.leave_out_another_summary(recording);
-        self.uncounted_files = recording.unaccounted().len();
+        self.check_seed();
+        self.uncounted_files = recording.unaccounted().len() + recording.ended_early().iter().len();
         let back = read_back::read(recording);
         if back.several_runs.is_some() {
             return self.refuse(back.several_runs);
@@ -186,7 +211,6 @@ impl Run {
         resolved.file_name().map_or_else(|| "run".to_owned(), |n| n.to_string_lossy().into_owned())
     }
 
-    /// Name of the scene.
     pub(crate) fn scene_name(&self) -> String {
         match (&self.scene, self.summary.scene.as_str()) {
             (Some(scene), "") => scene.name.clone(),
@@ -195,9 +219,8 @@ impl Run {
         }
     }
 
-    /// Seed of the run.
     pub(crate) fn seed(&self) -> Option<u64> {
-        self.summary.seed.or(self.scene.as_ref().map(|s| s.seed))
+        self.scene.as_ref().map(|scene| scene.seed).or(self.summary.seed)
     }
 
     /// The last packing at the end of a phase.

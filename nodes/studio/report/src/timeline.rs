@@ -7,6 +7,7 @@ use grainlab_console::Failure;
 use grainlab_core::results::PackingReport;
 use grainlab_core::{ComponentControl, Packing};
 use grainlab_msgs::{Topic, msg, simulated_seconds, topics};
+use grainlab_page::three_digits;
 use grainlab_recordings::{ChannelInfo, Message, OneRun, Recording, RunSign, Selection};
 use grainlab_servo::ServoRequest;
 use grainlab_viewer::{Film, View};
@@ -46,7 +47,6 @@ pub struct Timeline {
     pub(crate) film: Film,
     /// Energy balances, by phase.
     pub(crate) energy: Vec<msg::EnergyBalance>,
-    /// The last packing.
     pub(crate) last: Option<Packing>,
     /// Messages that could not be read.
     pub(crate) unreadable: usize,
@@ -236,5 +236,8 @@ impl Timeline {
 pub fn view(packing: &Packing) -> View {
     let pressure = grainlab_core::stress::stress(packing).tensor.mean() / 1e3;
     let phi = packing.solid_fraction();
-    View::new(packing, format!("{:.3} ms, p {pressure:.2} kPa, φ {phi:.4}", packing.time * 1e3))
+    View::new(
+        packing,
+        format!("{:.3} ms, p {} kPa, φ {phi:.4}", packing.time * 1e3, three_digits(pressure, 2)),
+    )
 }

@@ -104,7 +104,7 @@ fn of_measurement(n: usize, acoustic: &AcousticReport, stiffness: Option<&Stiffn
 fn medium(acoustic: &AcousticReport, stiffness: Option<&Stiffness>) -> Html {
     let rows = acoustic.moduli(stiffness).map(|(name, modulus, network)| {
         let (value, sigma) = (acoustic.medium.modulus(modulus), acoustic.medium.stddev(modulus));
-        let mega = |v: Option<f64>| Cell::fixed(v.map(|v| v / 1e6), 2);
+        let mega = |v: Option<f64>| Cell::three_digits(v.map(|v| v / 1e6), 2);
         let off = value.zip(network).map(|(v, n)| format!("{:+.2} %", 100.0 * (v / n - 1.0)));
         let off = Cell::number(off.as_deref().unwrap_or("–"));
         [Cell::text(name.replace("Theta", "Θ")), mega(network), mega(value), mega(sigma), off]

@@ -295,7 +295,7 @@ fn a_run_with_a_part_of_a_killed_recorder_does_not_claim_that_nothing_was_lost()
     let bytes = std::fs::read(&file).unwrap();
     std::fs::write(&file, &bytes[..bytes.len() * 2 / 3]).unwrap();
     grainlab_recordings::recover(folder.path()).unwrap();
-    assert!(page().contains(" lost, not counting 1 file, whose recorder was killed"));
+    assert!(page().contains(" lost, not counting 1 file whose recorder ended early"));
 }
 
 #[test]
@@ -322,4 +322,65 @@ fn the_command_that_repeats_a_run_has_its_launch_file_and_arguments() {
     let launched = r#"{"launch": "", "arguments": {}, "seed": 1, "words": ["my lab.yaml", "simd:=scalar"]}"#;
     std::fs::write(folder.path().join("launch.json"), launched).unwrap();
     assert!(visible(&page()).contains("grainlab launch 'my lab.yaml' simd:=scalar --scene"));
+}
+
+/// One grain with the modulus of a rubber, which touches its own images along the three edges.
+#[test]
+fn moduli_and_pressure_of_soft_grains_keep_three_digits_on_a_page() {
+    let radius = 1e-4;
+    let contact = |axis: usize| {
+        let (mut image, mut normal) = ([0; 3], Vec3::zeros());
+        (image[axis], normal[axis]) = (1, 1.0);
+        grainlab_core::Contact::pressed([0, 0], image, normal, 1e-8, 1e-7)
+    };
+    let mut soft = Packing {
+        step: 12,
+        friction: 0.3,
+        time_step: 1e-7,
+        contacts: [2, 1, 0].map(contact).to_vec(),
+        ..Packing::at_rest(Cell::cube(2.0 * radius - 1e-8).unwrap(), vec![radius], vec![Vec3::zeros()])
+    };
+    soft.material.shear_modulus = 1e6;
+    let report = analyze(&soft, &Settings::default()).unwrap().report;
+    let packing = packing_message(&soft, "made", Vec::new());
+    let message = packing_report_message(packing.header.clone(), &report).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let run = folder.path().join("soft-1-1");
+    record_these(
+        &run,
+        [("/packing", 1, to_cdr(&packing)), ("/packing_report", 2, to_cdr(&message))].into_iter(),
+    );
+    summarise(&run, 0);
+    let page = Run::read(&run).html().unwrap();
+    let [g12, _, theta] = grainlab_results::brief::moduli(&report);
+    let pressure = report.pressure() / 1e3;
+    for (name, value) in [("G12", g12.unwrap()), ("theta", theta.unwrap()), ("p", pressure)] {
+        let text = grainlab_console::three_digits(Some(value), 2);
+        assert!(value < 0.01 && visible(&page).contains(&text), "{name} {text} is missing");
+    }
+}
+
+#[test]
+fn a_run_is_said_to_repeat_only_with_the_scene_and_the_seed_of_the_recording() {
+    let folder = tempfile::tempdir().unwrap();
+    let put = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    let scene = grainlab_scene::Draft::of_text("base = 'demo'\nname = 'made'\nseed = 3").unwrap();
+    let scene = scene.resolve().unwrap().toml;
+    let mut run = RunWriter::create(folder.path(), "r", &[], WriterOptions::default()).unwrap();
+    run.attach("scene.toml", "application/toml", scene.as_bytes()).unwrap();
+    run.finish().unwrap();
+    put("scene.toml", &scene);
+    put("launch.json", r#"{"launch": "", "arguments": {}, "seed": 3, "words": []}"#);
+    put("summary.json", r#"{"scene": "made", "seed": 3, "exit": 0}"#);
+    let page = || visible(&Run::read(folder.path()).html().unwrap());
+    assert!(page().contains("--seed 3    # the same run: the same bytes"));
+    put("summary.json", r#"{"scene": "made", "seed": 7, "exit": 0}"#);
+    assert!(page().contains("states the seed 7") && page().contains("--seed 3    # the same run"));
+    put("summary.json", r#"{"scene": "made", "seed": 3, "exit": 0}"#);
+    put("scene.toml", &scene.replace("friction = 0.3", "friction = 0.8"));
+    assert!(
+        page().contains("another run: scene.toml is not the scene") && !page().contains("the same bytes")
+    );
+    std::fs::remove_file(folder.path().join("scene.toml")).unwrap();
+    assert!(page().contains("this does not run") && !page().contains("the same bytes"));
 }

@@ -11,7 +11,6 @@ use std::collections::BTreeMap;
 /// A column: its name, and its value in a row.
 type Column = (&'static str, fn(&Comparison) -> Cell);
 
-/// Columns of the comparisons.
 const COLUMNS: [Column; 12] = [
     ("quantity", |c| Cell::Text(c.quantity.key().to_owned())),
     ("sample", |c| Cell::Text(PAPER[c.sample].name.to_owned())),

@@ -62,7 +62,6 @@ impl Reproduction {
         ]
     }
 
-    /// All figures, with their captions.
     pub(crate) fn figures(&self) -> Html {
         let beside = |q, scale, name| vec![self.simulated(q, scale, "ours"), in_paper(q, scale, name)];
         let [g12, g13] = [Modulus::G12, Modulus::G13].map(Quantity::Modulus);

@@ -57,7 +57,6 @@ impl Reproduction {
         Judged::find(&self.judged, model, gamma, calibration)
     }
 
-    /// The comparison of one quantity of one state.
     fn get(&self, quantity: grainlab_paper::Quantity, sample: usize, pressure: usize) -> Option<&Comparison> {
         Comparison::find(&self.compared, quantity, sample, pressure)
     }

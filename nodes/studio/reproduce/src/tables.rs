@@ -124,7 +124,6 @@ impl Reproduction {
     }
 }
 
-/// Sample and pressure.
 pub(crate) fn head(sample: usize, pressure: usize) -> [Cell; 2] {
     [Cell::text(PAPER[sample].name), Cell::number(PRESSURE[pressure] / 1e3)]
 }

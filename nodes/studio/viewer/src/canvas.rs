@@ -85,7 +85,6 @@ impl Canvas {
         self.letters.write(text, at, |at, share| self.blend(at, ink, share));
     }
 
-    /// A line of ink.
     pub(crate) fn line(&mut self, ends: [[f64; 2]; 2], width: f64) {
         let range = |k: usize| {
             let [low, high] = [ends[0][k].min(ends[1][k]), ends[0][k].max(ends[1][k])];

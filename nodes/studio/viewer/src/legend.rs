@@ -12,7 +12,6 @@ pub(crate) struct Legend(&'static str, Vec<(Colour, String)>);
 pub(crate) const ROWS: usize = 2;
 
 impl Legend {
-    /// That of a quantity.
     pub(crate) fn new(view: &View, quantity: Quantity) -> Self {
         let rattler = (RATTLER, "rattler".to_owned());
         match quantity {

@@ -31,7 +31,6 @@ struct Grid {
     balls: Vec<([f64; 3], f64, u32)>,
 }
 
-/// The light in a scene.
 pub(crate) struct Light(Vec<Grid>);
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

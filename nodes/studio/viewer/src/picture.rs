@@ -10,7 +10,6 @@ use crate::section::{SMALL, Slice, chains};
 use crate::view::View;
 use grainlab_core::Vec3;
 
-/// Note on grains at the faces of the cell.
 const CAPTION: &str = "Periodic cell: each grain is drawn once, whole, where its centre is.";
 
 /// Largest side of a picture, pixels.

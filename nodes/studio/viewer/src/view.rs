@@ -18,7 +18,6 @@ pub struct View {
     pub part: Option<String>,
     /// The periodic cell, or the corner of it that is drawn.
     pub(crate) cell: Cell,
-    /// Ids of the grains.
     pub(crate) ids: Vec<u32>,
     /// Positions in units of its vectors, from 0 to 1.
     pub(crate) places: Vec<Vec3>,

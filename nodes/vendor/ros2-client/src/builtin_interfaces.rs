@@ -58,15 +58,13 @@ impl Time {
   ///
   /// To use simulation-capable time, ask from `Node`.
   pub fn now() -> Self {
-    chrono::Utc::now()
-      .timestamp_nanos_opt()
-      .map(Self::from_nanos)
-      .unwrap_or_else(|| {
-        error!("Timestamp out of range.");
-        Time::ZERO // Since we have to return something
-        // But your clock would have to rather far from year 2024 AD
-        // in order to trigger this default.
-      })
+    // Not by chrono, which panics if the clock is before 1970.
+    Self::try_from(std::time::SystemTime::now()).unwrap_or_else(|_| {
+      error!("Timestamp out of range.");
+      Time::ZERO // Since we have to return something
+      // But your clock would have to rather far from year 2024 AD
+      // in order to trigger this default.
+    })
   }
 
   pub fn from_nanos(nanos_since_epoch: i64) -> Self {
@@ -433,7 +431,7 @@ mod test {
 
   #[test]
   fn time_systemtime_roundtrip() {
-    for nanos in [0i64, 1, 1_500_000_000, 1_700_000_000_000_000_000] {
+    for nanos in [0i64, 1, -1_500_000_000, 1_500_000_000, 1_700_000_000_000_000_000] {
       let t = Time::from_nanos(nanos);
       let st: std::time::SystemTime = t.try_into().unwrap();
       assert_eq!(Time::try_from(st).unwrap(), t);

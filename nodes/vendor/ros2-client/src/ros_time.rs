@@ -30,7 +30,8 @@ impl ROSTime {
   ///
   /// To use simulation-capable time, ask from `Node`.
   pub(crate) fn now() -> Self {
-    Self::try_from(chrono::Utc::now()).unwrap_or(Self::ZERO)
+    // Not by chrono, which panics if the clock is before 1970.
+    SystemTime::try_from(std::time::SystemTime::now()).map_or(Self::ZERO, Self::from)
   }
 
   pub const ZERO: Self = Self::from_nanos(0);
@@ -416,7 +417,7 @@ mod test {
 
   #[test]
   fn systemtime_std_roundtrip() {
-    for nanos in [0i64, 1, 1_500_000_000, 1_700_000_000_000_000_000] {
+    for nanos in [0i64, 1, -1_500_000_000, 1_500_000_000, 1_700_000_000_000_000_000] {
       let t = SystemTime::from_nanos(nanos);
       let std_t: std::time::SystemTime = t.try_into().unwrap();
       assert_eq!(SystemTime::try_from(std_t).unwrap(), t);

@@ -22,7 +22,7 @@ use std::{
   fmt,
   ops::{Add, Sub},
   sync::OnceLock,
-  time::{Duration, Instant},
+  time::{Duration, Instant, SystemTime},
 };
 
 use chrono::{DateTime, Utc};
@@ -57,7 +57,8 @@ impl Time {
   #[doc(hidden)]
   pub fn now_with_utc() -> (Time, DateTime<Utc>) {
     let m0 = Self::now();
-    let utc = Utc::now();
+    // Not Utc::now(), which panics if the clock is before 1970.
+    let utc = DateTime::<Utc>::from(SystemTime::now());
     let m1 = Self::now();
     let diff = m1 - m0;
     //println!("now_with_utc() diff = {} ns" , diff.as_nanos() );

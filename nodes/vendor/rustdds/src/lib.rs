@@ -210,6 +210,7 @@ pub mod serialization;
 pub use dds::{
   key::{Key, Keyed},
   participant::{DomainParticipant, DomainParticipantBuilder, DomainParticipantStatusListener},
+  peer_hooks::ReceptionEvent,
   pubsub::{Publisher, Subscriber},
   qos,
   qos::{policy, QosPolicies, QosPolicyBuilder},

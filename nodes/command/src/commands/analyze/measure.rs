@@ -2,7 +2,7 @@
 
 use crate::commands::packings::Found;
 use crate::offline_recording::Recorded;
-use grainlab_core::results::yields;
+use grainlab_core::results::{NoStiffness, yields};
 use grainlab_experiment::PathPosition;
 use grainlab_micromechanics::network::Springs;
 use grainlab_micromechanics::probe::{StrainProbe, StrainProbeResult};
@@ -27,6 +27,7 @@ pub(crate) fn measure(
     let packing = &imported.packing;
     let named = |e: &dyn std::fmt::Display| format!("{source}, step {}: {e}", packing.step);
     let found = analyze(packing, settings).map_err(|e| named(&e))?;
+    let why_none = found.why_no_stiffness();
     let position = PathPosition::of(&imported.run_state);
     let mut shown =
         MeasuredPacking::new(source.to_owned(), found.report).at(position).doubted(packing, &imported.notes);
@@ -35,13 +36,15 @@ pub(crate) fn measure(
     let (report, probe) = (&shown.report, found.probe.as_ref());
     shown.probe = probe.zip(settings.probe).map(|(p, set)| probe_view(set.amplitude, p));
     let warnings = &mut shown.warnings;
-    warnings.extend(report.elasticity.as_ref().err().map(ToString::to_string));
+    warnings.extend(why_none);
     warnings.extend(probe.and_then(one_sided));
     // No wave passes a packing that some strain does not load.
     let is_without = report.stiffness().is_none() || yields(report);
+    let is_too_deep = packing.overlaps().is_some_and(|overlaps| overlaps.are_too_deep());
+    let is_fault = is_too_deep || report.elasticity.as_ref().is_err_and(NoStiffness::is_fault);
     let message = packing_report_message(imported.header.clone(), report).map_err(|e| named(&e));
     let messages = message.map(|m| vec![Recorded::new(topics::PACKING_REPORT, &m.header, &m)]);
-    Ok(Found { shown, is_without, messages })
+    Ok(Found { shown, is_without, is_fault, messages })
 }
 
 /// The details of a probe with strains of this amplitude.

@@ -28,6 +28,7 @@ pub(super) fn run(args: &Recorded) -> Result<Exit, Failure> {
     let check = &view.check;
     let sound = check.warnings.is_empty()
         && view.disputes.is_empty()
+        && check.ended_early.is_none()
         && check.unaccounted.is_empty()
         && !check.refused
         // The end of a file that was being written is lost in any case.
@@ -69,8 +70,9 @@ fn text(view: &View) -> String {
         count(check.attachments, "stored file")
     )];
     lines.extend(check.warnings.iter().map(ToString::to_string));
+    lines.extend(check.ended_early.iter().cloned());
     for path in &check.unaccounted {
-        let what = "it has no ledger: its recorder was killed, or is still running";
+        let what = "it has no ledger: its recorder was killed, had no room on the disk, or is still running";
         lines.push(format!("{}: {what}", path.display()));
     }
     for (path, without) in &check.recovered {
@@ -100,8 +102,12 @@ fn text(view: &View) -> String {
         let what = "losses cannot be judged: only grainlab's recorder counts them";
         lines.push(format!("{}: {what}", path.display()));
     }
+    lines.extend(check.unknown_records.iter().map(|opcode| {
+        format!("records of type 0x{opcode:02x}, which MCAP does not define as far as this program knows, are not read")
+    }));
     if check.without_index {
-        lines.push("it has no index, which MCAP allows: all of it was read".to_owned());
+        lines
+            .push("its index is absent or incomplete, which MCAP allows: the whole file was read".to_owned());
     }
     lines.extend(view.several_runs.clone());
     lines.join("\n") + "\n"

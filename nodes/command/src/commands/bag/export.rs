@@ -2,12 +2,12 @@
 
 use crate::commands::packings::import as import_flags;
 use clap::ValueEnum;
-use grainlab_console::{Failure, print, say};
+use grainlab_console::{Failure, print, say, worse};
 use grainlab_core::Packing;
 use grainlab_experiment::{PathPosition, StrainOrigin};
 use grainlab_export::{ExportFormat, Exporter, FilePart};
 use grainlab_node_kit::Exit;
-use grainlab_recordings::import::{self, Imported};
+use grainlab_recordings::import::{self, ImportError, Imported};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -28,11 +28,10 @@ Writes every packing of a recording, or of a file of any format that `grainlab a
   lammps-data  packing_1.data, ...: grains
   xyz          packings.xyz, extended XYZ, one frame per packing: grains
   vtk          grains_1.vtp and contacts_1.vtp, ..., and the collections grains.pvd and contacts.pvd
-  vtkhdf       grains_1.vtkhdf and contacts_1.vtkhdf, ...: no loss
-`grainlab analyze` reads csv, lammps, lammps-data, xyz and vtkhdf back. In vtk and vtkhdf, contacts are lines between centres, with their
-forces. In files for LAMMPS, ids count from 1: those of the packing, or one more if it has an id 0. A strain since the first step of
+`grainlab analyze` reads csv, lammps, lammps-data and xyz back. In vtk, contacts are lines between centres, with their forces. In files for LAMMPS, ids count from 1: those of the packing, or one more if it has an id 0. A strain since the first step of
 a run, in which no phase has set a reference state, is left out. Data that PATH lacks are given as to
-`grainlab analyze`. Existing files are not overwritten. Exit 3 if a part of the recording could not be read.";
+`grainlab analyze`. Existing files are not overwritten. Exit 3 if a part of the recording could not be read, 4 if grains overlap by more
+than a tenth of a diameter.";
 
 /// Arguments of `grainlab bag export`.
 #[derive(Debug, clap::Args)]
@@ -55,9 +54,11 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     std::fs::create_dir_all(&args.out).map_err(Failure::at(&args.out))?;
     let options = args.import.options()?;
     let mut writer = Writer::new(args.format, &args.path, &args.out);
-    let mut failure = None;
+    let (mut failure, mut exit) = (None, Exit::Done);
     let warnings = import::each(&args.path, &options, &mut |imported| match writer.write(&imported) {
         Ok(notes) => {
+            // The notes have the fault.
+            exit = worse(exit, imported.exit());
             notes.iter().for_each(|note| say!("grainlab: {note}"));
             ControlFlow::Continue(())
         }
@@ -66,7 +67,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
             ControlFlow::Break(())
         }
     })
-    .map_err(Failure::failed)?;
+    .map_err(ImportError::failure)?;
     if let Some(failure) = failure.or_else(|| writer.finish().err()) {
         writer.remove();
         return Err(failure);
@@ -77,13 +78,13 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         args.out.display()
     ))?;
     warnings.iter().for_each(|w| say!("grainlab: {w}"));
-    Ok(if warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
+    Ok(worse(exit, if warnings.is_empty() { Exit::Done } else { Exit::DataLoss }))
 }
 
 /// Writes packings in a format of the command into a folder, made if it does not exist; notes on them.
 ///
 /// # Errors
-/// A format that does not exist or cannot hold a packing, and files that exist or cannot be written; then none is left.
+/// A format that does not exist, and files that exist or cannot be written; then none is left.
 pub fn export(format: &str, folder: &Path, packings: &[&Imported]) -> Result<Vec<String>, Failure> {
     let format = ExportFormat::from_str(format, false).map_err(|_| {
         let known = ExportFormat::value_variants().iter().filter_map(ValueEnum::to_possible_value);
@@ -144,7 +145,7 @@ impl<'a> Writer<'a> {
                 imported.step
             ));
         }
-        let parts = self.exporter.next(&packing).map_err(Failure::failed)?;
+        let parts = self.exporter.next(&packing);
         self.packings += 1;
         parts.iter().try_for_each(|part| self.append(part)).map(|()| notes)
     }
@@ -163,7 +164,7 @@ impl<'a> Writer<'a> {
             self.made.insert(part.name.clone());
             file
         };
-        file.write_all(&part.content).map_err(failed)
+        file.write_all(part.content.as_bytes()).map_err(failed)
     }
 
     /// Removes what was written: part of an export cannot be told from the whole, and would keep it from being repeated.
@@ -222,6 +223,7 @@ mod tests {
             step: 0,
             run_state,
             source: String::new(),
+            rounding: None,
             notes: Vec::new(),
         };
         assert!(packing.strain().is_some());

@@ -5,7 +5,7 @@ use grainlab_console::Failure;
 use grainlab_launcher::NodeKind;
 use grainlab_msgs::Topic;
 use grainlab_node_kit::{Exit, NodeSpec, Scope, run_node};
-use grainlab_recorder::{OtherTopics, Recorder, ResultSlot, Settings, SnapshotSettings, contract_topics};
+use grainlab_recorder::{OtherTopics, Recorder, ResultSlot, Settings, contract_topics};
 use grainlab_recordings::{Compression, MessagePath, QosOverrides, TopicNames, WriterOptions};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -15,16 +15,12 @@ Examples:
   grainlab bag record -a -o my_run
   grainlab bag record /stress /packing
   grainlab bag record --regex '/camera/.*' --msg-path my_ws/install/share
-  grainlab bag record --snapshot 30 --trigger packing_report -o last_seconds     # or: kill -USR1 PID
 
 Topics of any type are recorded, also those that appear later. Definitions of types come from grainlab, which has its own and
 those in msgs/std, then from the folders of --msg-path. A topic whose definition is not found is recorded with an empty
 schema. Readers are reliable (transient local) if all publishers of the topic are, or as --qos-profile-overrides-path says:
 
   /scan: {reliability: best_effort, durability: volatile, history: keep_last, depth: 500}
-
-A snapshot has the messages of the last seconds and, of each latched topic, at least the last message; at most 512 MiB are
-kept.
 
 Ends with SIGINT (Ctrl-C) or SIGTERM; the file is then complete. Exit 3 if any message was lost.";
 
@@ -63,12 +59,6 @@ pub(crate) struct Args {
     /// Compression of the chunks
     #[arg(long, value_enum, value_name = "KIND", default_value = "zstd")]
     compression: Compression,
-    /// Keep only the last SECONDS, in memory, and write them at every SIGUSR1
-    #[arg(long, value_name = "SECONDS")]
-    snapshot: Option<f64>,
-    /// Write the snapshot at every message on this topic, too
-    #[arg(long, value_name = "TOPIC", requires = "snapshot")]
-    trigger: Option<String>,
     /// Scene to attach: a built-in name or a file
     #[arg(long, value_name = "SCENE")]
     scene: Option<String>,
@@ -87,7 +77,6 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         whole_run: false,
         append: false,
         writer: writer(args),
-        snapshot: snapshot(args)?,
     };
     let spec = NodeSpec {
         name: NodeKind::Recorder.name(),
@@ -133,13 +122,4 @@ fn writer(args: &Args) -> WriterOptions {
         split_after: args.max_bag_duration.map_or(default.split_after, Duration::from_secs),
         ..default
     }
-}
-
-fn snapshot(args: &Args) -> Result<Option<SnapshotSettings>, Failure> {
-    let Some(seconds) = args.snapshot else { return Ok(None) };
-    let span = Duration::try_from_secs_f64(seconds).ok().filter(|span| !span.is_zero());
-    let span = span.ok_or_else(|| {
-        Failure::usage(format!("--snapshot {seconds} is out of range: more than 0 seconds"))
-    })?;
-    Ok(Some(SnapshotSettings { span, trigger: args.trigger.clone() }))
 }

@@ -1,5 +1,6 @@
 //! The states of a campaign in one table, from the recordings alone.
 
+use crate::commands::launch::another_scene;
 use grainlab_campaign::{Campaign, Folder, Member, Standing};
 use grainlab_console::{Cell, Failure, count, print};
 use grainlab_core::quantity::{Quantity, Shape};
@@ -7,16 +8,14 @@ use grainlab_core::results::{InferredQuantity, QUANTITIES};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
 use grainlab_page::Dataset;
-use grainlab_recordings::{METADATA_RECORD, Recording, scenes};
+use grainlab_recordings::{Recording, scenes};
 use grainlab_results::quantities::{columns, typed_cells};
 use grainlab_results::read_back::{self, InvertedPacking};
 use grainlab_results::{Inference, ORIGIN};
+use grainlab_scene::Scene;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-
-/// Columns that differ from run to run of the same campaign.
-const OF_RUN: [&str; 4] = ["grainlab_version", "commit", "host", "begun"];
+use std::path::Path;
 
 /// The state of a member at the end of a phase.
 pub(crate) struct State<'a> {
@@ -24,8 +23,6 @@ pub(crate) struct State<'a> {
     /// Name of the phase; empty if it is not known.
     pub(crate) phase: String,
     pub(crate) found: InvertedPacking,
-    /// Cells of [`OF_RUN`].
-    of_run: [Cell; 4],
 }
 
 /// Writes the tables beside the members. The exit is 3 if a member is missing.
@@ -36,24 +33,20 @@ pub(super) fn run(campaign: &Campaign, folder: &Folder) -> Result<Exit, Failure>
     Ok(exit)
 }
 
-/// Writes the tables; a line for each, with the paths of its files.
+/// Writes the tables; a line for each, with the path of its file.
 pub(crate) fn write(campaign: &Campaign, folder: &Folder, states: &[State<'_>]) -> Result<String, Failure> {
-    let (mut table, keys) = table(campaign, states);
+    let (table, keys) = table(campaign, states);
     let by: Vec<&str> = keys.iter().map(String::as_str).collect();
     // An axis has no sign, so that components of several have no mean: that of their fabric has the direction.
     let axes = QUANTITIES.iter().filter(|q| matches!(q.shape, Shape::Vector)).flat_map(Quantity::columns);
     let without: Vec<String> = axes.chain(["seed".to_owned()]).collect();
     let without: Vec<&str> = without.iter().map(String::as_str).collect();
     let groups = table.means(&by, &without);
-    let csv = folder.write("states.csv", table.csv())?;
-    table.extend(OF_RUN.map(str::to_owned).into(), states.iter().map(|s| s.of_run.to_vec()));
-    let states = [csv, folder.write("states.parquet", table.parquet()?)?];
-    let means =
-        [folder.write("groups.csv", groups.csv())?, folder.write("groups.parquet", groups.parquet()?)?];
-    let line = |n: usize, name: &str, [csv, parquet]: [PathBuf; 2]| {
-        format!("{}: {}, {}\n", count(n, name), csv.display(), parquet.display())
+    let line = |name: &str, file: &str, table: &Dataset| -> Result<String, Failure> {
+        let path = folder.write(file, table.csv())?;
+        Ok(format!("{}: {}\n", count(table.len(), name), path.display()))
     };
-    Ok(line(table.len(), "state", states) + &line(groups.len(), "group", means))
+    Ok(line("state", "states.csv", &table)? + &line("group", "groups.csv", &groups)?)
 }
 
 /// The states of all finished members, in their order, and 3 if a member is missing.
@@ -67,15 +60,16 @@ pub(crate) fn states<'a>(campaign: &'a Campaign, folder: &Folder) -> Result<(Vec
             "grainlab: {runs} in {root} are of no member of its campaign.toml: the tables leave them out"
         );
     }
-    let found: Vec<Result<Vec<State<'a>>, String>> =
+    let found: Vec<Result<Found<'a>, String>> =
         finished.into_par_iter().map(|(member, _)| of_member(member, &folder.run(member))).collect();
     let mut exit = if missing.is_empty() { Exit::Done } else { Exit::DataLoss };
-    let (mut states, mut empty, mut unread) = (Vec::new(), 0, 0);
+    let (mut states, mut empty, mut unread, mut without_scene) = (Vec::new(), 0, 0, 0);
     for member in found {
         match member {
             Ok(found) => {
-                empty += usize::from(found.is_empty());
-                states.extend(found);
+                empty += usize::from(found.states.is_empty());
+                without_scene += usize::from(found.without_scene);
+                states.extend(found.states);
             }
             Err(why) => {
                 grainlab_console::say!("grainlab: {why}");
@@ -95,6 +89,12 @@ pub(crate) fn states<'a>(campaign: &'a Campaign, folder: &Folder) -> Result<(Vec
             folder.root().display()
         );
     }
+    if without_scene > 0 {
+        let members = count(without_scene, "member");
+        grainlab_console::say!(
+            "grainlab: {members}: the file of the scene is not there, so only the seed and what is set were compared with the recording"
+        );
+    }
     if empty > 0 {
         let members = count(empty, "member");
         grainlab_console::say!(
@@ -104,19 +104,25 @@ pub(crate) fn states<'a>(campaign: &'a Campaign, folder: &Folder) -> Result<(Vec
     Ok((states, exit))
 }
 
-fn of_member<'a>(member: &'a Member, run: &Path) -> Result<Vec<State<'a>>, String> {
+/// The states of a member.
+struct Found<'a> {
+    states: Vec<State<'a>>,
+    /// True if the file of its scene is not there.
+    without_scene: bool,
+}
+
+fn of_member<'a>(member: &'a Member, run: &Path) -> Result<Found<'a>, String> {
     let failed = |e: &dyn std::fmt::Display| {
         let run = run.display();
         format!("member {} is not in the table: {e}; remove {run} to run it again", member.name)
     };
     let recording = Recording::open(run).map_err(|e| failed(&e))?;
-    let path = run.join("scene.toml");
-    let scene = scenes::load(&path.to_string_lossy(), &[], None).map_err(|e| failed(&e))?;
     let recorded = recording.stored_files().into_iter().find(|file| file.name == "scene.toml");
-    if recorded.is_none_or(|file| file.bytes != scene.text.as_bytes()) || scene.scene.seed != member.seed {
-        return Err(failed(&"its recording has another scene or seed"));
-    }
-    let scene = scene.scene;
+    let recorded = recorded.ok_or_else(|| failed(&"its recording has no scene"))?;
+    let recorded = String::from_utf8_lossy(&recorded.bytes);
+    let scene = scene_of(member, &recorded).map_err(|e| failed(&e))?;
+    let without_scene = scene.is_none();
+    let scene = scene.map_or_else(|| Scene::parse(&recorded), Ok).map_err(|e| failed(&e))?;
     let back = read_back::read(&recording);
     if let Some(complaint) = back.complaints.first() {
         return Err(failed(complaint));
@@ -125,12 +131,40 @@ fn of_member<'a>(member: &'a Member, run: &Path) -> Result<Vec<State<'a>>, Strin
         let phase = found.packing.position.and_then(|p| p.phase.checked_sub(1));
         phase.and_then(|n| scene.phases.get(n)).map_or_else(String::new, |p| p.name.clone())
     };
-    let metadata = recording.metadata(METADATA_RECORD).unwrap_or_default();
-    let cell = |text: Option<String>| text.map_or(Cell::Unknown, Cell::Text);
-    let stored = |key: &str| cell(metadata.get(key).cloned());
-    let of_run = [stored("grainlab"), stored("commit"), stored("host"), cell(recording.begun())];
-    let state = |found| State { member, phase: name(&found), found, of_run: of_run.clone() };
-    Ok(back.states.into_iter().map(state).collect())
+    let state = |found| State { member, phase: name(&found), found };
+    Ok(Found { states: back.states.into_iter().map(state).collect(), without_scene })
+}
+
+/// Returns the scene of a member, whose recording has the text `recorded`. `None` if the file of the scene is not there, as on another machine:
+/// then only what is set in the scene is compared.
+///
+/// # Errors
+/// Returns an error if the recording is of another scene, seed, or value, or if the scene is invalid.
+fn scene_of(member: &Member, recorded: &str) -> Result<Option<Scene>, String> {
+    let read = |scene: &str| scenes::read(scene, &member.sets(), Some(member.seed));
+    let is_file = member.scene.contains('/');
+    let (expected, found) = if is_file && !Path::new(&member.scene).exists() {
+        let plain = |scene: Scene| Scene { description: String::new(), fingerprint: 0, ..scene };
+        let set = Scene::parse(recorded).map_err(|e| e.to_string())?;
+        match read(recorded) {
+            // Cycles are unrolled in a recording: their keys cannot be set again.
+            Err(_) => return Ok(None),
+            Ok(again) if plain(again.scene.clone()) == plain(set) => return Ok(None),
+            Ok(again) => (again.text, None),
+        }
+    } else {
+        let own = read(&member.scene).map_err(|e| e.to_string())?;
+        (own.text, Some(own.scene))
+    };
+    if expected == recorded {
+        return Ok(found);
+    }
+    let (other, scene) = (another_scene(recorded, &expected), &member.scene);
+    Err(format!(
+        "its recording has {other} than the campaign states: scene {scene}, seed {}, {}",
+        member.seed,
+        member.sets().join(", ")
+    ))
 }
 
 /// Member, what was set in it, phase, every quantity of the packing, and what each model inferred from its data; and the
@@ -213,6 +247,43 @@ fn inferred(results: &[Inference]) -> BTreeMap<String, Cell> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use grainlab_campaign::Setting;
+
+    fn member(scene: &str, seed: u64, friction: &str) -> Member {
+        let set = vec![Setting { key: "friction".into(), value: friction.into() }];
+        Member { name: "m".into(), scene: scene.into(), seed, set }
+    }
+
+    /// The text in the recording of a member.
+    fn recorded(member: &Member) -> String {
+        scenes::read(&member.scene, &member.sets(), Some(member.seed)).unwrap().text
+    }
+
+    #[test]
+    fn a_recording_of_another_scene_seed_or_value_is_not_that_of_the_member() {
+        let own = member("demo", 1, "0.3");
+        assert!(scene_of(&own, &recorded(&own)).unwrap().is_some_and(|scene| scene.phases.len() > 1));
+        for other in [member("demo", 1, "0.1"), member("demo", 2, "0.3"), member("s2", 1, "0.3")] {
+            let error = scene_of(&own, &recorded(&other)).unwrap_err();
+            assert!(error.contains("another scene (line") && error.contains("friction=0.3"), "{error}");
+        }
+    }
+
+    #[test]
+    fn what_is_set_is_compared_without_the_file_of_the_scene_and_all_of_it_with_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mine.toml");
+        let write =
+            |more: &str| std::fs::write(&path, format!("base = 'demo'\nname = 'mine'\n{more}")).unwrap();
+        write("");
+        let of = |friction: &str| member(&path.to_string_lossy(), 1, friction);
+        let texts = ["0.1", "0.3"].map(|friction| recorded(&of(friction)));
+        write("grains.count = 77");
+        assert!(scene_of(&of("0.1"), &texts[0]).unwrap_err().contains("another scene"));
+        std::fs::remove_file(&path).unwrap();
+        assert_eq!(scene_of(&of("0.1"), &texts[0]), Ok(None));
+        assert!(scene_of(&of("0.1"), &texts[1]).unwrap_err().contains("another scene"));
+    }
 
     #[test]
     fn a_setting_is_a_number_where_every_value_is_one_and_keeps_its_text_elsewhere() {

@@ -53,7 +53,6 @@ impl Answer {
         Self { line, state: Ok(state), outcomes }
     }
 
-    /// For an invalid line.
     pub(super) fn of_bad_row(row: BadRow, line: u64) -> Self {
         Self { line: Some(line), state: Err(row), outcomes: Vec::new() }
     }
@@ -78,8 +77,9 @@ impl Answer {
                 let mut inference = Inference::of(case.model.name(), name, outcome);
                 let result = &mut inference.result;
                 result.status = status(state, outcome).name();
-                // The reason of a model without an estimate comes first, then what is wrong with the data.
-                let at = if outcome.is_ok() { 0 } else { result.warnings.len() };
+                // The reason of a model for its status comes first, then what is wrong with the data.
+                let is_of_model = Status::of(outcome) == Status::Contradictory && !state.in_conflict;
+                let at = if outcome.is_ok() && !is_of_model { 0 } else { result.warnings.len() };
                 result.warnings.splice(at..at, state.notes.iter().cloned());
                 inference
             }
@@ -144,6 +144,15 @@ impl Answer {
             }
         }
         faults.into_iter().map(|(text, models)| format!("{}: {text}", models.join(", "))).collect()
+    }
+
+    /// Why an estimate is contradictory, or determines nothing; empty for others.
+    pub(super) fn contradictions(&self) -> Vec<String> {
+        let Ok(state) = &self.state else { return Vec::new() };
+        let of_outcome = |outcome: &Result<Estimate, EmtError>| {
+            outcome.as_ref().map_or(Vec::new(), |estimate| contradictions(state, estimate))
+        };
+        self.outcomes.iter().flat_map(of_outcome).collect()
     }
 
     /// The faults as lines for stderr, each with the number of the row.

@@ -62,9 +62,11 @@ speed could be measured, and [want] with a sigma of z, eps, eps_stiffness, stiff
     speeds = [{mode = \"p\", angles = [0, 90]}, {mode = \"s\", angles = [0], error = 0.02}]
     want = {z = 0.2}
 
-The status of other answers is ok, extrapolated (outside the range of the model, or not all of its unknowns), contradictory (the data contradict each
-other or the model) or unknown (no answer); the column reason has the notes of an estimate. The exit code is 4 where the recommended
-answer is contradictory or unknown, or a model refuses the moduli, and 2 where an input is missing or invalid.";
+The status of other answers is ok, extrapolated (outside the range of the model, or not all of its unknowns; of a sample at several pressures,
+each row of CSV has the status of its pressure), contradictory (the data contradict each other or the model, or z changes by more than two of its
+errors without a row that the others contradict) or unknown (no answer, or one that no packing of spheres has); the column reason has the notes
+of an estimate. The exit code is 4 where the recommended answer is contradictory or unknown, or a model refuses the moduli, and 2 where an
+input is missing or invalid.";
 
 /// The data to invert. All quantities in SI units.
 #[derive(Debug, clap::Args)]
@@ -286,10 +288,21 @@ impl Args {
         state.conditions.size_spread = self.size_spread;
         state.grains = self.grains.map(f64::from);
         if let Some((name, lines)) = speeds {
-            let value = self.density.ok_or_else(|| Failure::usage("--density is needed with --speeds"))?;
-            speeds::add(&mut state, &name, &lines, Measured { value, stddev: self.density_sigma })?;
+            self.refuse_flags_in_columns(&lines)?;
+            speeds::add(&mut state, &name, &lines, (self.density, self.density_sigma))?;
         }
         Ok(state)
+    }
+
+    /// Refuses the pressure and the density of the flags where every row has its own.
+    pub(super) fn refuse_flags_in_columns(&self, lines: &[SpeedLine]) -> Result<(), Failure> {
+        let has_pressure = lines.iter().all(|l| l.pressure_pa.is_some());
+        let has_density = lines.iter().all(|l| l.density().is_some());
+        let in_columns = [
+            ("--pressure", has_pressure && self.pressure.is_some()),
+            ("--density", has_density && self.density.is_some()),
+        ];
+        refuse(&in_columns, "is in a column of every row")
     }
 
     /// Refuses flags that samples whose contacts are not known do not use.

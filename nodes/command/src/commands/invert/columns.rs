@@ -3,8 +3,8 @@
 use super::inputs::{INPUTS, Input, Role};
 use super::slips;
 use super::state::State;
-use crate::commands::separated;
 use csv::{ReaderBuilder, StringRecord, Terminator};
+use grainlab_console::separated;
 use grainlab_core::results::QUANTITIES;
 use grainlab_core::{Stiffness, Vec3};
 use grainlab_emt::{Moduli, Modulus, check_structure};
@@ -39,7 +39,6 @@ pub(crate) struct Columns {
     defaults: State,
 }
 
-/// A valid row.
 #[derive(Clone, Debug)]
 pub(crate) struct Row {
     pub(crate) state: State,
@@ -47,7 +46,6 @@ pub(crate) struct Row {
     pub(crate) group: Vec<String>,
 }
 
-/// An invalid row.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct BadRow {
     pub(crate) sample: Option<String>,
@@ -421,8 +419,11 @@ fn no_slips(names: &[String], by: &[String], has_stiffness: bool) -> Result<(), 
             is_there(meant) || names_of_meant.is_some_and(|all| all.iter().any(|a| is_there(a.name)));
         // The errors of a stiffness that an analysis prints are those of the solver.
         if !(printed.contains(name) && (meant_is_there || name.starts_with("stddev_"))) {
+            let convert = slips::converted(name, meant).map_or_else(String::new, |(unit, factor)| {
+                format!("multiply its values, in {unit}, by {factor} and ")
+            });
             return Err(format!(
-                "column {name} is not read, and its name is almost {meant}: rename it, to _{name} if it is something else"
+                "column {name} is not read, and its name is almost {meant}: {convert}rename it, to _{name} if it is something else"
             ));
         }
     }

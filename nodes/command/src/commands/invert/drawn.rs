@@ -40,7 +40,7 @@ pub(super) fn write(state: &State, cases: &[Case], number: Number, path: &Path) 
         "csv" => posterior_draws::csv(&draws, chains),
         _ => json(&posterior_draws::inference_data(&draws, chains, attributes(case, &draws, seed)))?,
     };
-    grainlab_console::write_whole(path, text).map_err(|e| Failure::failed(format!("{name}: {e}")))?;
+    grainlab_console::write_whole(path, text)?;
     say!(
         "grainlab: {name}: {} independent draws of model {}, {:.0} % of the proposals accepted",
         draws.draws.len(),

@@ -11,6 +11,10 @@ use grainlab_console::Failure;
 use grainlab_emt::Draws;
 use grainlab_node_kit::Exit;
 use grainlab_results::Inference;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Reason of a result that was not begun.
+pub(crate) const INTERRUPTED: &str = "interrupted";
 
 /// The model, and what goes with it.
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +38,8 @@ pub struct InvertedRow {
     pub sample: Option<String>,
     /// Estimate of the model; if it has none, its warnings have the reason.
     pub inference: Inference,
+    /// Why the status is contradictory, or nothing is determined.
+    pub contradictions: Vec<String>,
     /// The exit code that the command would have without an answer; `None` with one.
     pub failed: Option<Exit>,
 }
@@ -50,8 +56,8 @@ pub struct Inverted {
 /// Inverts each row of `table`, text of the form of `grainlab invert --table`, on all cores.
 ///
 /// # Errors
-/// Wrong names, columns or priors; draws of a row that has no answer.
-pub fn invert(table: Vec<u8>, by: &By<'_>) -> Result<Inverted, Failure> {
+/// Wrong names, columns or priors; draws of a row that has no answer; `stop` was set.
+pub fn invert(table: Vec<u8>, by: &By<'_>, stop: &AtomicBool) -> Result<Inverted, Failure> {
     let mut cases = cases(&[by.model.to_owned()], &[by.calibration.to_owned()], None)?;
     if let Some(text) = by.prior {
         prior::apply_text("prior", text, &mut cases)?;
@@ -68,6 +74,9 @@ pub fn invert(table: Vec<u8>, by: &By<'_>) -> Result<Inverted, Failure> {
         Err(bad) => Answer::of_bad_row(bad, number),
     };
     while let Some(answers) = rows.next(answer)? {
+        if stop.load(Ordering::Relaxed) {
+            return Err(Failure::new(Exit::Interrupted, INTERRUPTED));
+        }
         for answer in answers {
             let (sample, exit) = (answer.sample().map(str::to_owned), answer.exit(&cases));
             let failed = (!matches!(answer.outcomes[..], [Ok(_)])).then_some(exit);
@@ -79,7 +88,13 @@ pub fn invert(table: Vec<u8>, by: &By<'_>) -> Result<Inverted, Failure> {
             }
             let mut inference = answer.inferences(&cases).into_iter().next();
             inference.iter_mut().for_each(|inference| inference.result.warnings.append(&mut notes));
-            found.extend(inference.map(|inference| InvertedRow { sample, inference, failed }));
+            let contradictions = answer.contradictions();
+            found.extend(inference.map(|inference| InvertedRow {
+                sample,
+                inference,
+                contradictions,
+                failed,
+            }));
         }
     }
     Ok(Inverted { rows: found, draws })

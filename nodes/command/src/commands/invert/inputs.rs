@@ -21,7 +21,6 @@ pub(super) struct Input {
     set: fn(&mut State, f64),
 }
 
-/// The role of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Role {
     /// The required input.
@@ -103,7 +102,6 @@ const DATA: [Input; 30] = inputs! {
 };
 
 impl Input {
-    /// Value of this input in a state.
     pub(super) fn get(&self, state: &State) -> Option<f64> {
         match self.role {
             Role::Truth(q) => state.truth.get(q),
@@ -111,7 +109,6 @@ impl Input {
         }
     }
 
-    /// Sets it in a state.
     pub(super) fn set(&self, state: &mut State, value: f64) {
         match self.role {
             Role::Truth(q) => state.truth = state.truth.with(q, value),

@@ -104,7 +104,7 @@ pub(super) fn run(
     }
     #[cfg(feature = "studio")]
     if let Some(path) = plot {
-        grainlab_console::write_whole(path, plot::svg(cases, points)).map_err(Failure::at(path))?;
+        grainlab_console::write_whole(path, plot::svg(cases, points))?;
     }
     if let Some((exit, complaint)) = unsolved.first() {
         say!("{complaint}\ngrainlab: {} without an estimate, this the first", count(unsolved.len(), "row"));

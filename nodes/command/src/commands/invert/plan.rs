@@ -2,7 +2,7 @@
 
 use super::args::Args;
 use super::speed_table::{SpeedLine, planned};
-use grainlab_console::{CsvText, Failure, Format, Table, fixed, say};
+use grainlab_console::{CsvText, Failure, Format, Table, fixed, input, say};
 use grainlab_emt::{
     Calibration, EmtError, SampleQuantity, SeriesPrior, SpeedSeries, series_stddev, simulate_series,
 };
@@ -88,7 +88,6 @@ struct Further {
     sigma: Vec<f64>,
 }
 
-/// The answer to a plan.
 #[derive(Debug, Serialize)]
 struct Answer {
     speeds: usize,
@@ -176,7 +175,6 @@ fn further(plan: &Plan, planned_waves: &[Wave]) -> Result<Vec<(Further, Wave)>, 
 /// Quantities with their standard deviations in the prior, and these in one simulated experiment after another.
 type Sigmas = (Vec<SampleQuantity>, Vec<Vec<f64>>);
 
-/// Runs a plan.
 pub(super) fn run(
     path: &Path,
     args: &Args,
@@ -186,7 +184,7 @@ pub(super) fn run(
 ) -> Result<(), Failure> {
     let name = path.display();
     let usage = |fault: String| Failure::usage(format!("{name}: {fault}"));
-    let text = std::fs::read_to_string(path).map_err(Failure::at(path))?;
+    let text = input::text(path, input::SETTINGS).map_err(Failure::at(path))?;
     let plan: Plan = toml::from_str(&text).map_err(|e| usage(e.to_string()))?;
     let network = Calibration::builtin("grainlab").and_then(|c| c.network.as_ref());
     let network = network.ok_or_else(|| Failure::failed("the built-in calibration has no network"))?;

@@ -2,7 +2,7 @@
 
 use super::case::Case;
 use super::state::State;
-use grainlab_console::{Table, fixed};
+use grainlab_console::{Table, fixed, three_digits};
 use grainlab_emt::{Check, EmtError, Estimate, PosteriorSettings};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -71,7 +71,7 @@ pub(super) fn people(all: &[Predictive]) -> String {
     for p in all {
         for m in &p.moduli {
             let numbers = [
-                fixed(Some(m.observed_pa / 1e6), 2),
+                three_digits(Some(m.observed_pa / 1e6), 2),
                 probability(Some(m.predictive)),
                 probability(m.left_out),
             ];

@@ -14,7 +14,6 @@ pub(super) struct Printer<'a> {
 }
 
 impl Printer<'_> {
-    /// Names of the cells of [`Printer::csv`].
     pub(super) fn csv_header() -> String {
         let name = |name: &str| name.to_owned();
         let columns = ["sample", "pressure_pa"].map(name).into_iter().chain(Inference::exact_columns());

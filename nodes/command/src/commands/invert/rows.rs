@@ -2,8 +2,7 @@
 
 use super::columns::{BadRow, Columns, Row};
 use super::state::State;
-use crate::commands::separated;
-use grainlab_console::Failure;
+use grainlab_console::{Failure, separated};
 use grainlab_recordings::input;
 use rayon::prelude::*;
 use std::fs::File;
@@ -23,13 +22,11 @@ const SHARE: usize = 32;
 /// A line with its number.
 type Line = (u64, Vec<u8>);
 
-/// A stream of lines.
 struct Lines {
     source: BufReader<Box<dyn Read>>,
     name: String,
     /// Number of the last line read, from 1.
     number: u64,
-    /// Separator of the cells.
     separator: char,
 }
 
@@ -37,7 +34,7 @@ impl Lines {
     /// Opens a file or a pipe; `-` is the standard input. A device is refused, because it may be endless.
     fn open(path: &Path) -> Result<Self, Failure> {
         if path.as_os_str() == "-" {
-            return Ok(Self::new(Box::new(std::io::stdin()), "standard input".to_owned()));
+            return Ok(Self::new(Box::new(input::standard()), "standard input".to_owned()));
         }
         let name = path.display().to_string();
         let pipe = std::fs::metadata(path).is_ok_and(|m| m.file_type().is_fifo());
@@ -115,6 +112,9 @@ impl Rows {
             let line = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&line);
             if line.starts_with(b"#") || line.iter().all(u8::is_ascii_whitespace) {
                 continue;
+            }
+            if let Some(what) = separated::no_text(line) {
+                return Err(Failure::usage(format!("{}: {what}", lines.name)));
             }
             lines.separator = std::str::from_utf8(line).map_or(',', separated::separator);
             let line = lines.with_commas(line.to_vec());

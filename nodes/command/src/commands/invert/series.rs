@@ -7,7 +7,7 @@ mod sample;
 use super::args::Args;
 use super::contact::Contact;
 use super::speed_table::SpeedLine;
-use grainlab_console::{Failure, Format, say};
+use grainlab_console::{Failure, Format, input, say};
 use grainlab_emt::{Calibration, EmtError, Sensitivity, SeriesPrior, infer_series};
 use grainlab_node_kit::Exit;
 use sample::Sample;
@@ -17,7 +17,7 @@ use std::path::Path;
 pub(super) fn prior(path: Option<&Path>) -> Result<SeriesPrior, Failure> {
     let Some(path) = path else { return Ok(SeriesPrior::builtin().clone()) };
     let name = path.display();
-    let text = std::fs::read_to_string(path).map_err(|e| Failure::failed(format!("{name}: {e}")))?;
+    let text = input::text(path, input::SETTINGS).map_err(|e| Failure::failed(format!("{name}: {e}")))?;
     SeriesPrior::parse(&text)
         .map_err(|e| Failure::usage(format!("{name}: {e}; this prior is that of samples whose contacts are not known: --print-prior --contact free prints one")))
 }
@@ -54,10 +54,9 @@ pub(super) fn run(
             }
             estimate => estimate.map_err(wrong)?,
         };
-        let sensitivity = Sensitivity::of(&series, network, &prior).map_err(wrong)?;
+        let sensitivity = Sensitivity::of(&estimate, &series, network, &prior).map_err(wrong)?;
         let contact = contact.text();
-        let is_contradictory = estimate.is_contradictory() || sensitivity.is_contradictory();
-        let status = if is_contradictory { "contradictory" } else { "ok" };
+        let status = estimate.status(&sensitivity);
         let mut all = Sample {
             sample,
             contact,
@@ -70,14 +69,14 @@ pub(super) fn run(
             notes: Vec::new(),
             doubts: Vec::new(),
         };
-        [all.doubts, all.notes] = print::notes(&all, &prior);
+        [all.doubts, all.notes] = print::notes(&all, &prior, network.reach.z[0]);
         found.push(all);
     }
     format.print(&found, || print::csv(&found), || found.iter().map(print::text).collect())?;
     if let Some(path) = plot.filter(|_| !found.is_empty()) {
         plotted(&found, path)?;
     }
-    let contradictory: Vec<&Sample> = found.iter().filter(|s| s.status == "contradictory").collect();
+    let contradictory: Vec<&Sample> = found.iter().filter(|s| s.is_contradictory()).collect();
     for sample in &contradictory {
         say!("grainlab: {name}: sample {:?}: contradictory: {}", sample.sample, print::contradiction(sample));
     }
@@ -93,14 +92,13 @@ fn plotted(samples: &[Sample], path: &Path) -> Result<(), Failure> {
             name: &s.sample,
             series: &s.series,
             estimate: &s.estimate,
-            is_contradictory: s.status == "contradictory",
+            is_contradictory: s.is_contradictory(),
             notes: &s.notes,
             doubts: &s.doubts,
         });
     }
     let page = grainlab_report::series_page(&all);
     grainlab_console::write_whole(path, page.as_bytes())
-        .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))
 }
 
 #[cfg(not(feature = "studio"))]

@@ -29,7 +29,11 @@ const SYNONYMS: [(&str, &str); 15] = [
     ("sigma", "speed_sigma"),
 ];
 
+/// Units of columns, each a thousand times the one before.
 const UNITS: [&str; 4] = ["pa", "kpa", "mpa", "gpa"];
+
+/// The units as they are written.
+const SPELLED: [&str; 4] = ["Pa", "kPa", "MPa", "GPa"];
 
 /// Shortest name in which one letter may be wrong: below it, other names are as near.
 const LONG: usize = 5;
@@ -70,6 +74,14 @@ pub(super) fn meant<'a>(column: &str, known: &[&'a str]) -> Option<&'a str> {
         joined.len() >= LONG && of_name.len() >= LONG && strsim::osa_distance(&joined, &of_name) == 1
     };
     known.iter().copied().find(same).or_else(|| known.iter().copied().find(nearly))
+}
+
+/// Unit of a column, and what its values are multiplied by to get the unit of the name that is meant; `None` if both have the same
+/// unit, or one has none.
+pub(super) fn converted(column: &str, meant: &str) -> Option<(&'static str, String)> {
+    let unit = |name: &str| words(name).iter().rev().find_map(|w| UNITS.iter().position(|unit| unit == w));
+    let (own, other) = (unit(column)?, unit(meant)?);
+    (own != other).then(|| (SPELLED[own], format!("1e{}", 3 * (own as i32 - other as i32))))
 }
 
 /// The name that a column begins with, followed by something else, as in phi_percent. Names of one letter and of truths begin
@@ -161,6 +173,21 @@ mod tests {
             ("K", "k"),
         ] {
             assert_eq!(meant(column, &KNOWN), Some(name), "{column}");
+        }
+    }
+
+    #[test]
+    fn a_slip_of_a_unit_is_named_with_its_factor() {
+        for (column, name, expected) in [
+            ("pressure_kpa", "pressure_pa", Some(("kPa", "1e3"))),
+            ("G12-GPa", "g12_pa", Some(("GPa", "1e9"))),
+            ("P_Pa", "p_kpa", Some(("Pa", "1e-3"))),
+            ("g12", "g12_pa", None),
+            ("presure_pa", "pressure_pa", None),
+            ("phi_percent", "phi", None),
+        ] {
+            let expected = expected.map(|(unit, factor)| (unit, factor.to_owned()));
+            assert_eq!(converted(column, name), expected, "{column}");
         }
     }
 

@@ -1,9 +1,8 @@
 //! The rows of a table of wave speeds.
 
 use super::slips;
-use crate::commands::separated;
 use csv::StringRecord;
-use grainlab_console::Failure;
+use grainlab_console::{Failure, separated};
 use grainlab_core::Vec3;
 use grainlab_emt::SpeedMode;
 use std::path::Path;
@@ -85,6 +84,13 @@ pub(crate) struct SpeedLine {
     /// The mode in the plane of axis e3 and direction, and the angle between both, rad.
     #[serde(skip, default = "longitudinal")]
     pub(super) wave: (SpeedMode, Option<f64>),
+}
+
+impl SpeedLine {
+    /// Returns the density, kg/m³: the one that the row states, or the density of its grains times their solid fraction.
+    pub(super) fn density(&self) -> Option<f64> {
+        self.density.or(self.grain_density.zip(self.phi).map(|(density, phi)| density * phi))
+    }
 }
 
 fn longitudinal() -> (SpeedMode, Option<f64>) {
@@ -189,7 +195,6 @@ pub(super) fn in_radians(lines: &[SpeedLine]) -> Option<String> {
     })
 }
 
-/// A row of a table with this header.
 pub(crate) fn row(header: &StringRecord, record: &StringRecord) -> Result<SpeedLine, String> {
     if record.len() != header.len() {
         return Err(format!("{} cells under {} columns", record.len(), header.len()));

@@ -9,16 +9,33 @@ use grainlab_emt::{Conditions, Measured};
 use grainlab_emt_inversion::notes_on_fit;
 use grainlab_node_kit::Exit;
 
+/// What to do where a row has no density.
+pub(super) const NO_DENSITY: &str =
+    "column density is empty: give it, or grain_density and phi, or --density";
+
+/// Densities closer than this relative difference are one.
+const SAME_DENSITY: f64 = 1e-6;
+
 /// Adds the moduli from speeds to a state, with notes on what the speeds do not determine, and on whether they contradict each
-/// other. `name` is that of the file.
+/// other. `name` is the name of the file. `by_flags` has the density and its standard deviation, for a file without them.
 pub(super) fn add(
     state: &mut State,
     name: &str,
     lines: &[SpeedLine],
-    density: Measured,
+    by_flags: (Option<f64>, f64),
 ) -> Result<(), Failure> {
     let usage =
         |line: &SpeedLine, fault: &str| Failure::usage(format!("{name}: line {}: {fault}", line.line));
+    if let Some(other) = lines.iter().find(|line| line.sample != lines[0].sample) {
+        let (first, second) = (&lines[0].sample, &other.sample);
+        return Err(usage(
+            other,
+            &format!("sample {second:?} after {first:?}: smooth spheres at one pressure are one sample"),
+        ));
+    }
+    let phi = lines[0].phi.filter(|phi| lines.iter().all(|line| line.phi == Some(*phi)));
+    state.conditions.solid_fraction = state.conditions.solid_fraction.or(phi.map(Measured::exact));
+    let density = density_of(lines, by_flags).map_err(|(line, fault)| usage(line, &fault))?;
     let speed = |line: &SpeedLine| {
         let (direction, polarization) = line.way.ok_or_else(|| {
             usage(line, "give angle_deg and mode, or direction_x to _z and polarization_x to _z")
@@ -44,4 +61,26 @@ pub(super) fn add(
     state.moduli = fitted.observation.moduli;
     state.full_covariance = fitted.observation.covariance;
     Ok(())
+}
+
+/// The density of the one state of all rows, from their columns or else the flags, with its standard deviation; or a row and its fault.
+fn density_of(
+    lines: &[SpeedLine],
+    (by_flag, stddev_by_flag): (Option<f64>, f64),
+) -> Result<Measured, (&SpeedLine, String)> {
+    let mut found: Option<(&SpeedLine, f64)> = None;
+    for line in lines {
+        let value = line.density().or(by_flag).ok_or_else(|| (line, NO_DENSITY.to_owned()))?;
+        let (first, density) = *found.get_or_insert((line, value));
+        if (value / density - 1.0).abs() > SAME_DENSITY {
+            let fault = format!(
+                "density {value} kg/m3, and {density} in line {}: speeds of one state have one density",
+                first.line
+            );
+            return Err((line, fault));
+        }
+    }
+    let stddevs = lines.iter().map(|line| line.density_sigma.unwrap_or(stddev_by_flag));
+    let stddev = stddevs.sum::<f64>() / lines.len() as f64;
+    Ok(Measured { value: found.map_or(f64::NAN, |(_, density)| density), stddev })
 }

@@ -77,7 +77,6 @@ impl State {
         self.covariance(&self.moduli).map(|c| c[(at, at)].sqrt())
     }
 
-    /// The estimate of the model of this case.
     pub(super) fn infer(&self, case: &Case) -> Result<Estimate, EmtError> {
         let estimate = case.model.infer(&self.observation(case)?, &case.calibration)?;
         match &case.prior {
@@ -86,7 +85,6 @@ impl State {
         }
     }
 
-    /// The posterior of this case.
     pub(super) fn posterior<'a>(
         &self,
         case: &'a Case,
@@ -96,7 +94,6 @@ impl State {
         Posterior::new(case.model, &observation, &case.calibration, &case.own_prior(), settings)
     }
 
-    /// The observation for this case.
     pub(super) fn observation(&self, case: &Case) -> Result<Observation, EmtError> {
         let mut conditions = Conditions { material: self.material(&case.calibration), ..self.conditions };
         if case.model.uses_gamma() {

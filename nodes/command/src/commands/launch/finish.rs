@@ -1,17 +1,18 @@
 //! The result of a run, read back from its recording.
 
 use super::output::Output;
-use grainlab_console::{Failure, Format, called, json, print, worse, write_whole};
+use grainlab_console::{Failure, Format, called, json, print, replace_whole, worse};
 use grainlab_launcher::NodeKind;
 use grainlab_launcher::{Received, Supervised};
 use grainlab_node_kit::{Exit, RunId};
-use grainlab_recordings::Recording;
 use grainlab_recordings::scenes::SceneText;
 use grainlab_recordings::strangers;
+use grainlab_recordings::{Recording, Selection, TopicTally};
 use grainlab_results::continuity::Exchanges;
 use grainlab_results::read_back::{self, ReadBack};
 use grainlab_results::{Launched, MeasuredPacking, NodeEnd, Printed, Summary};
 use grainlab_results::{brief, summary_text};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Published results that the recording lacks.
@@ -30,6 +31,20 @@ fn missing(received: &Received, back: &ReadBack) -> Vec<String> {
         }
     }
     missing
+}
+
+/// Returns the number of messages in the recording, by topic. The statistics of a damaged file also count messages that can no longer
+/// be read, so its messages are read one by one.
+fn recorded(recording: &Recording) -> Result<BTreeMap<String, u64>, Failure> {
+    let stated = recording.info().topics.into_iter().map(|t| (t.name, t.messages));
+    if recording.warnings().is_empty() {
+        return Ok(stated.collect());
+    }
+    let mut read: BTreeMap<String, u64> = stated.map(|(name, _)| (name, 0)).collect();
+    for message in recording.messages(&Selection::default())? {
+        *read.entry(message.channel.topic.clone()).or_default() += 1;
+    }
+    Ok(read)
 }
 
 /// Reads the recording back, prints the result and writes it beside the recording.
@@ -51,16 +66,22 @@ pub(super) fn finish(
         Ok(recording) => (read_back::read(recording), recording.ledger()),
         Err(error) => (ReadBack::failed(error), None),
     };
-    if tallies.as_ref().is_none_or(|t| t.iter().any(|t| t.lost > 0)) {
-        exit = worse(exit, Exit::DataLoss);
-    }
     let mut missing = missing(&supervised.received, &back);
     let exchanges = recording.as_ref().ok().map(Exchanges::of).transpose()?.flatten();
     // An interrupted run may end with an unanswered request.
     if let (Some(_), Some(exchanges)) = (supervised.received.packings, &exchanges) {
         missing.extend(exchanges.missing(back.engine_changes()));
     }
-    let topics = recording.as_ref().map_or_else(|_| Vec::new(), |recording| recording.info().topics);
+    let recorded = recording.as_ref().ok().map(recorded).transpose()?.unwrap_or_default();
+    let damage = recording.as_ref().map_or_else(|_| Vec::new(), Recording::warnings);
+    // That of the messages that the results are made of is among them.
+    let damage = damage.iter().map(ToString::to_string).filter(|line| !back.complaints.contains(line));
+    let damage: Vec<String> = damage.collect();
+    back.complaints.extend(damage);
+    let is_short = |t: &TopicTally| t.lost > 0 || recorded.get(&t.name).copied().unwrap_or(0) < t.recorded;
+    if tallies.as_ref().is_none_or(|tallies| tallies.iter().any(is_short)) {
+        exit = worse(exit, Exit::DataLoss);
+    }
     let children = &supervised.children;
     let has = |node: NodeKind| children.iter().any(|c| c.plan.is(node));
     let unanswered = (has(NodeKind::FabricAnalyzer) && back.not_analysed > 0)
@@ -70,11 +91,19 @@ pub(super) fn finish(
         exit = worse(exit, Exit::DataLoss);
         back.complaints.extend(missing);
     }
+    for state in &back.states {
+        if let Some(why) = state.packing.report.elasticity.as_ref().err().filter(|why| why.is_fault()) {
+            exit = worse(exit, Exit::PhysicsInvalid);
+            back.complaints.push(format!("the packing of step {}: {why}", state.packing.step));
+        }
+    }
+    let ended_early = recording.as_ref().map_or(0, |recording| recording.ended_early().iter().len());
     let uncounted = recording.as_ref().map_or_else(|_| Vec::new(), Recording::unaccounted);
     back.complaints.extend(uncounted.iter().map(|path| {
         let path = path.display();
         format!(
-            "{path}: its recorder was killed: messages sent then may be missing, and are not counted as lost"
+            "{path}: its recorder was killed, or had no room on the disk: messages sent then may be missing, and are not \
+             counted as lost; if the disk is full, free space and resume the run"
         )
     }));
     let nodes = supervised.children.iter().map(|c| NodeEnd {
@@ -90,8 +119,8 @@ pub(super) fn finish(
         run: run.to_string(),
         resumed: output.resumed,
         exchanges: exchanges.map(|e| e.count()),
-        recorded: topics.into_iter().map(|t| (t.name, t.messages)).collect(),
-        uncounted_files: uncounted.len(),
+        recorded,
+        uncounted_files: uncounted.len() + ended_early,
         wall_seconds: supervised.wall.as_secs_f64(),
         nodes: nodes.collect(),
         recording: recording.is_ok().then(|| directory.display().to_string()),
@@ -107,9 +136,11 @@ pub(super) fn finish(
     let path = directory.join("summary.json");
     let text = json(&summary)?;
     let packings: Vec<_> = summary.states.iter().map(|s| s.packing.clone()).collect();
-    let written = write_whole(&path, &text).map_err(|e| {
-        Failure::failed(format!("{}: {e}; the result is printed, and is in the recording", path.display()))
-    });
+    // The states were read from the recording.
+    let kept =
+        if summary.states.is_empty() { "" } else { "; the result is printed, and is in the recording" };
+    let written =
+        replace_whole(&path, &text).map_err(|e| Failure::failed(format!("{}: {e}{kept}", path.display())));
     let exists = |name: &str| directory.join(name).exists();
     let files = [
         ("recording", recording.is_ok()),

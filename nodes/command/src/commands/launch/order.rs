@@ -1,7 +1,6 @@
 //! The launch file and its arguments, kept beside the recording so that the run can be resumed.
 
-use crate::viewers::VIEWERS;
-use grainlab_console::{Failure, json, write_whole};
+use grainlab_console::{Failure, json, replace_whole};
 use grainlab_launcher::{LaunchFile, NodePlan, check_one_process};
 use grainlab_recordings::input;
 use serde::{Deserialize, Serialize};
@@ -18,12 +17,10 @@ pub(super) struct Order {
     pub(super) launch: String,
     /// Values given for its arguments, except scene, seed and out.
     pub(super) arguments: BTreeMap<String, String>,
-    /// The seed of the run.
     pub(super) seed: u64,
     /// The launch file, by its built-in name or whole path, and the arguments: the words of the command.
     #[serde(default)]
     pub(super) words: Vec<String>,
-    /// Messages that are recorded.
     #[serde(default)]
     pub(super) record: Record,
     /// All nodes are in the process of the launcher.
@@ -57,10 +54,9 @@ impl Order {
     pub(super) fn keep(&self, directory: &Path) -> Result<(), Failure> {
         let path = directory.join(FILE);
         // At once: what has a launch file can be resumed.
-        write_whole(&path, json(self)?).map_err(Failure::at(&path))
+        replace_whole(&path, json(self)?).map_err(Failure::at(&path))
     }
 
-    /// Reads it back.
     pub(super) fn read(directory: &Path) -> Result<Self, Failure> {
         let path = directory.join(FILE);
         let failed = |e: &dyn std::fmt::Display| {
@@ -82,8 +78,15 @@ impl Order {
         values.insert("scene", path(&directory.join("scene.toml")));
         values.insert("seed", self.seed.to_string());
         values.insert("out", path(directory));
-        let file = LaunchFile::parse(&self.launch, Path::new(".")).map_err(Failure::usage)?;
-        let mut plans = file.nodes(&values, VIEWERS).map_err(Failure::usage)?;
+        let earlier = |fault| {
+            let run = directory.display();
+            let end = "an earlier version, which ran them, began this run and must finish it";
+            Failure::usage(format!(
+                "{run}: actions of its launch file cannot be run any more: {end}. The fault: {fault}"
+            ))
+        };
+        let file = LaunchFile::parse(&self.launch, Path::new(".")).map_err(earlier)?;
+        let mut plans = file.nodes(&values).map_err(Failure::usage)?;
         let scene = directory.join("scene.toml");
         let agrees = |plan: &NodePlan| plan.check_handed_on(&scene, self.seed, directory);
         plans.iter().try_for_each(agrees).map_err(Failure::usage)?;

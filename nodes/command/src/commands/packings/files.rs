@@ -5,7 +5,7 @@ use super::writer::ResultWriter;
 use grainlab_console::{Failure, Signals, count, worse};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::Recording;
-use grainlab_recordings::import::{ImportError, ImportOptions, Imported, each};
+use grainlab_recordings::import::{ImportOptions, Imported, each};
 use grainlab_results::Printed;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::ops::ControlFlow;
@@ -133,10 +133,8 @@ fn read(
             (lines(&warnings), exit)
         }
         Err(error) => {
-            let mut exit = match without_path(&error) {
-                ImportError::Missing(_) | ImportError::Given(_) => Exit::Usage,
-                _ => Exit::Failure,
-            };
+            let failure = error.failure();
+            let mut exit = failure.exit;
             let mut complaints = Vec::new();
             // A recording without a packing may be cut off before it, or the chunk with the packing may be
             // damaged: then data were lost.
@@ -144,16 +142,9 @@ fn read(
                 complaints = lines(&recording.check().warnings);
                 exit = if complaints.is_empty() { exit } else { Exit::DataLoss };
             }
-            complaints.push(error.to_string());
+            complaints.push(failure.to_string());
             (complaints, exit)
         }
-    }
-}
-
-fn without_path(error: &ImportError) -> &ImportError {
-    match error {
-        ImportError::In { source, .. } => without_path(source),
-        other => other,
     }
 }
 

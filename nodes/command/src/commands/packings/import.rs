@@ -4,7 +4,7 @@ use grainlab_console::Failure;
 use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Mat3, Vec3};
 use grainlab_msgs::topics;
-use grainlab_recordings::import::ImportOptions;
+use grainlab_recordings::import::{Frames, ImportOptions};
 use std::path::PathBuf;
 
 /// Formats, for the help of a command.
@@ -12,7 +12,7 @@ pub(crate) const FORMATS: &str = "\
 A file that cannot be read is reported and the others are measured; the exit code is the worst of all files. Ctrl-C prints
 the finished results and ends with 130. Formats are recognised by content: a recording, CSV (p,id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz and
 c,i,j,nx,ny,nz,delta,fn,ftx,fty,ftz; NAME.json beside NAME.csv has cell and material), LAMMPS dump or data file
-(atom_style sphere), extended XYZ (pos, radius), VTKHDF (grains_1.vtkhdf, with the contacts of contacts_1.vtkhdf beside it), YADE export.text or textExt (x_y_z_r, x_y_z_r_matId, id_x_y_z_r_matId, x_y_z_r_attrs; the cell from a
+(atom_style sphere), extended XYZ (pos, radius), YADE export.text or textExt (x_y_z_r, x_y_z_r_matId, id_x_y_z_r_matId, x_y_z_r_attrs; the cell from a
 comment: textExt(..., comment='cell ' + str(O.cell.hSize)), or from --cell). If a file lists no contacts, they are found
 from positions, with the normal forces of their law and without tangential ones. A flag replaces what a file says, which is noted. The contact forces of a LAMMPS dump or data file need these lines,
 all of them with friction (fx fy fz of granular pair styles is only the normal force):
@@ -102,12 +102,14 @@ impl Args {
             density: self.density,
             friction: self.friction,
             law: self.contact_law,
+            default_law: None,
             radius: self.radius,
             // The default name means the packings of the recording, whatever their topic is called.
             topic: Some(self.topic.clone())
                 .filter(|topic| !topic.is_empty() && topic != topics::PACKING.name),
             contact_forces,
             contact_columns: self.contact_columns.clone(),
+            frames: Frames::All,
         })
     }
 }

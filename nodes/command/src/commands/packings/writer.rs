@@ -25,7 +25,6 @@ impl<R: Printed> ResultWriter<R> {
         Self { printer, recording, bar, measured: 0, without: 0, exit: Exit::Done }
     }
 
-    /// Takes the next result.
     pub(super) fn put(&mut self, found: Result<Found<R>, String>) -> Result<(), Failure> {
         self.measured += 1;
         self.bar.inc(1);
@@ -37,6 +36,7 @@ impl<R: Printed> ResultWriter<R> {
             }
         };
         self.without += usize::from(found.is_without);
+        self.exit = worse(self.exit, if found.is_fault { Exit::PhysicsInvalid } else { Exit::Done });
         let text = self.printer.next(&found.shown)?;
         self.bar.suspend(|| print(&text))?;
         match (&mut self.recording, found.messages) {

@@ -16,7 +16,7 @@ pub(super) fn drawn(folder: &Path, row: &Row, record: &Record, picked: &Picks) -
     let stem = Path::new(&row.file).with_extension("").to_string_lossy().replace(['/', '\\'], "-");
     let wave: String = row.wave.iter().map(|word| format!("-{word}")).collect();
     let path = folder.join(format!("{:03}-{stem}{wave}.svg", row.line));
-    write_whole(&path, figure(row, record, picked).svg(Theme::Light)).map_err(Failure::at(&path))
+    write_whole(&path, figure(row, record, picked).svg(Theme::Light))
 }
 
 fn figure(row: &Row, record: &Record, picked: &Picks) -> Figure {

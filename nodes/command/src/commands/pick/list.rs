@@ -1,9 +1,8 @@
 //! The table of the records.
 
 use crate::commands::invert::{SPEED_COLUMNS, checked_header, not_a_number, speed_row};
-use crate::commands::separated;
 use grainlab_acoustics::record::Passage;
-use grainlab_console::Failure;
+use grainlab_console::{Failure, separated};
 use grainlab_core::Vec3;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -48,7 +47,6 @@ struct Cells {
     time_unit: Option<String>,
 }
 
-/// One row of the table.
 #[derive(Clone, Debug)]
 pub(super) struct Row {
     pub(super) line: u64,
@@ -72,7 +70,6 @@ pub(super) struct Row {
     pub(super) copied: Vec<(String, String)>,
 }
 
-/// The rows of a table.
 pub(super) fn read(path: &Path) -> Result<Vec<Row>, Failure> {
     let (name, text) = separated::read(path)?;
     let folder = path.parent().unwrap_or(Path::new(""));

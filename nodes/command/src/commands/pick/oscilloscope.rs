@@ -1,8 +1,8 @@
 //! The file of a record: lines of text, then lines of numbers.
 
 use super::list::Row;
-use crate::commands::separated;
 use grainlab_acoustics::record::Record;
+use grainlab_console::{input, separated};
 use std::ops::Range;
 
 /// Deviation of a time from even spacing, in samples, that rounding of the file may cause.
@@ -11,10 +11,9 @@ const UNEVEN: f64 = 0.5;
 /// Signal of the source over its largest, at which it starts.
 const STARTS: f64 = 0.02;
 
-/// The record of a row.
 pub(super) fn read(row: &Row) -> Result<Record, String> {
-    let text = std::fs::read(&row.path).map_err(|e| e.to_string())?;
-    parsed(&String::from_utf8_lossy(&text), row)
+    let text = input::bytes(&row.path, input::TEXT).map_err(|e| e.to_string())?;
+    parsed(&String::from_utf8_lossy(separated::utf8(&text)?), row)
 }
 
 fn parsed(text: &str, row: &Row) -> Result<Record, String> {

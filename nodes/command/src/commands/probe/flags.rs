@@ -26,7 +26,6 @@ impl Flags {
         given.iter().map(one).collect::<Result<_, _>>().map(Self)
     }
 
-    /// The settings of the node with these parameters.
     pub(super) fn settings(&self) -> Result<Settings, Failure> {
         let specs = parameters();
         let mut words = vec!["--ros-args".to_owned()];

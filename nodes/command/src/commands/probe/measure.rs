@@ -21,20 +21,28 @@ pub(crate) fn measure(
     let named = |e: &dyn std::fmt::Display| format!("{source}, step {}: {e}", packing.step);
     let measured = |axis: Vec3| {
         let settings = grainlab_micromechanics::Settings { axis, ..Default::default() };
-        let report = analyze(packing, &settings).map_err(|e| named(&e))?.report;
-        let mut measured = MeasuredPacking::new(source.to_owned(), report).doubted(packing, &imported.notes);
+        let found = analyze(packing, &settings).map_err(|e| named(&e))?;
+        let why_none = found.why_no_stiffness();
+        let mut measured =
+            MeasuredPacking::new(source.to_owned(), found.report).doubted(packing, &imported.notes);
         measured.step = imported.step;
+        measured.warnings.extend(why_none);
         Ok::<_, String>(measured)
     };
     let found = match grainlab_acoustics::measure(packing, &settings.0) {
         Ok(found) => found,
-        Err(AcousticsError::NotJammed(why)) => {
+        Err(error @ AcousticsError::Setting { .. }) => return Err(named(&error)),
+        // Structure and stress are known all the same.
+        Err(why) => {
             let mut packing = measured(settings.0.axis.unwrap_or_else(Vec3::z))?;
-            packing.warnings.push(why.to_string());
+            let is_fault = !matches!(&why, AcousticsError::NoStiffness(why) if !why.is_fault());
+            if packing.report.elasticity.as_ref().err().is_none_or(|none| none.to_string() != why.to_string())
+            {
+                packing.warnings.push(format!("no wave speeds: {why}"));
+            }
             let shown = Probed { packing, acoustic: None };
-            return Ok(Found { shown, is_without: true, messages: Ok(Vec::new()) });
+            return Ok(Found { shown, is_without: true, is_fault, messages: Ok(Vec::new()) });
         }
-        Err(error) => return Err(named(&error)),
     };
     let sent = messages(&imported.header, packing, &found).map_err(|e| named(&e))?;
     let reading = WaveSpeedsReading::try_from(&sent.wave_speeds).map_err(|e| named(&e))?;
@@ -46,5 +54,5 @@ pub(crate) fn measure(
     let waveforms = sent.waveforms.iter().map(|w| Recorded::new(topics::WAVEFORM, &w.header, w));
     let speeds = Recorded::new(topics::WAVE_SPEEDS, &sent.wave_speeds.header, &sent.wave_speeds);
     let shown = Probed { packing: measured, acoustic: Some(acoustic) };
-    Ok(Found { shown, is_without: false, messages: Ok(waveforms.chain([speeds]).collect()) })
+    Ok(Found { shown, is_without: false, is_fault: false, messages: Ok(waveforms.chain([speeds]).collect()) })
 }

@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 const CONVERGED: f64 = 0.3;
 
 /// Error of the limit over the change by the last term times the ratio of the last two terms: root mean square over 243
-/// speeds of 27 packings of 14 recipes, z 4.3 to 6.3, none of which is in the judgement of `grainlab bench acoustics`.
+/// speeds of 27 packings of 14 recipes, z 4.3 to 6.3, none of which is in the judgement of `cargo run --release -p grainlab_bench -- acoustics`.
 const BEYOND: f64 = 1.5;
 
 /// Part of the other modes' errors that is added to that of each mode, where its own terms cancel by chance.

@@ -1,11 +1,14 @@
 //! Checks of a record, and its source and receiver without offset, of unit height.
 
+use super::ambient::Ambient;
 use super::band::Band;
 use super::filter::filtered;
 use super::passage::{Passage, Record};
 use super::separated::{STANDS_OUT, Separated, largest, separated};
 use crate::error::{AcousticsError, setting};
+use crate::time_of_flight::spectrum::Spectrum;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Least number of samples per period, of a record, and before the source starts.
 const LEAST_PER_PERIOD: f64 = 4.0;
@@ -19,11 +22,18 @@ const ENOUGH_PER_PERIOD: f64 = 40.0;
 const STARTED: f64 = 0.2;
 const ONE_SIDED: f64 = 0.5;
 
+/// Least correlation of a source with what was recorded as its receiver, of another channel that follows it.
+const EXCHANGED: f64 = 0.5;
+
 /// Least number of equal samples in a row, at an end of the range, of a signal that is cut there.
 const CUT: usize = 3;
 
-/// Checks and cleans a record.
-pub(super) fn cleaned(record: &Record, passage: &Passage) -> Result<(Separated, Band), AcousticsError> {
+/// Checks and cleans a record, whose receiver has errors of rounding of this standard deviation (see [`super::ambient::rounding`]).
+pub(super) fn cleaned(
+    record: &Record,
+    rounding: f64,
+    passage: &Passage,
+) -> Result<(Separated, Band), AcousticsError> {
     for (name, value) in [
         ("sample_rate", Some(record.sample_rate)),
         ("distance", Some(passage.distance)),
@@ -58,10 +68,16 @@ pub(super) fn cleaned(record: &Record, passage: &Passage) -> Result<(Separated, 
         setting("samples", *value, value.is_finite(), "finite")?;
     }
     let quiet = record.quiet.clone();
+    let refused = |reason: &str| Err(AcousticsError::NoArrival(reason.to_owned()));
+    if record.source == record.receiver {
+        return refused("source and receiver are the same signal: give the channels of both");
+    }
+    if is_exchanged(&centred(&record.source, &quiet)?, &centred(&record.receiver, &quiet)?) {
+        return refused("the receiver has the wave before the source has it: exchange the channels of both");
+    }
     let source = filtered(&centred(&record.source, &quiet)?, record.sample_rate, passage);
     let height = largest(&source);
     let source: Vec<f64> = source.iter().map(|s| s / height).collect();
-    let refused = |reason: &str| Err(AcousticsError::NoArrival(reason.to_owned()));
     if source[0].abs() > STARTED {
         return refused("the record begins after its source: record the source from its start");
     }
@@ -81,8 +97,10 @@ pub(super) fn cleaned(record: &Record, passage: &Passage) -> Result<(Separated, 
     let height = largest(&receiver);
     let receiver: Vec<f64> = receiver.iter().map(|s| s / height).collect();
     let is_cut = is_cut(&receiver);
-    let found = separated(source, receiver, &quiet, passage, &band, is_cut);
-    if found.stands_out.is_nan() || found.stands_out < STANDS_OUT {
+    let frequencies = Spectrum::new(samples, 1).padded();
+    let ambient = Arc::new(Ambient::new(&receiver[quiet], rounding / height, band.frequency, frequencies));
+    let found = separated(source, receiver, &ambient, passage, &band, is_cut);
+    if !found.is_clear {
         return Err(AcousticsError::NoArrival(format!(
             "the correlation with the source is {:.1} times that of noise, and {STANDS_OUT} are needed",
             found.stands_out
@@ -116,6 +134,18 @@ fn centred(signal: &[f64], quiet: &Range<usize>) -> Result<Vec<f64>, AcousticsEr
     } else {
         Err(AcousticsError::NoArrival("a signal is constant".to_owned()))
     }
+}
+
+/// Returns true if the receiver is most like the source of a later time, by more than a period.
+fn is_exchanged(source: &[f64], receiver: &[f64]) -> bool {
+    let spectrum = Spectrum::new(source.len(), 1);
+    let correlation = spectrum.correlation(&spectrum.of(receiver), &spectrum.of(source));
+    let height = |k: &usize| correlation[*k].norm();
+    let top = (0..correlation.len()).max_by(|a, b| height(a).total_cmp(&height(b))).unwrap_or(0);
+    let energies = [source, receiver].map(|signal| signal.iter().map(|s| s * s).sum::<f64>());
+    let period = 1.0 / Band::of(source, 0.0).frequency;
+    let lead = (correlation.len() / 2) as f64 - top as f64;
+    lead > period && height(&top) > EXCHANGED * (energies[0] * energies[1]).sqrt()
 }
 
 fn is_cut(signal: &[f64]) -> bool {

@@ -3,7 +3,7 @@
 use super::band::Band;
 use crate::noise::Noise;
 use crate::time_of_flight::spectrum::{Analytic, Spectrum};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Relative difference of ρ v² at the wave number q from that of long waves, over (q × mean diameter)²: mean and standard deviation of
 /// packings, for P, S, and one of both.
@@ -12,8 +12,9 @@ const BEND: [(f64, f64); 3] = [(0.65, 0.17), (0.35, 0.14), (0.5, 0.2)];
 /// Speed of P over that of S, which the near field lies between.
 const FASTER: f64 = 1.6;
 
-/// Relative change of the slowness by losses, over the part of the amplitude that is lost per wavelength (Kramers and Kronig): standard deviation.
-const SLOWED: f64 = 0.25;
+/// Logarithm of the ratio of the frequencies of long waves and of the source, in a medium of constant Q: standard deviation. The test
+/// `stated_errors_hold_for_waves_in_packings` checks it, on waves whose limit of long waves is known.
+const SLOWED: f64 = 1.0;
 
 /// Frequency over that of the source up to which the delay grows with dispersion, so that it does not wrap around.
 const BOUND: f64 = 3.0;
@@ -36,6 +37,8 @@ pub(super) struct Path {
 pub(super) struct Unknown {
     bend: f64,
     slowed: f64,
+    /// True for losses that are proportional to the frequency, false for losses that are proportional to its square.
+    is_of_constant_q: bool,
     near: f64,
     longitudinal: bool,
 }
@@ -78,7 +81,8 @@ impl Path {
     /// The middle of what is not known.
     pub(super) fn typical(&self) -> Unknown {
         let bend = BEND[self.longitudinal.map_or(2, |l| usize::from(!l))].0;
-        Unknown { bend, slowed: 0.0, near: 0.0, longitudinal: self.longitudinal == Some(true) }
+        let longitudinal = self.longitudinal == Some(true);
+        Unknown { bend, slowed: 0.0, is_of_constant_q: true, near: 0.0, longitudinal }
     }
 
     /// Draws what is not known.
@@ -87,6 +91,7 @@ impl Path {
         Unknown {
             bend: (mean + spread * random.next()).max(0.0),
             slowed: SLOWED * random.next(),
+            is_of_constant_q: random.next() > 0.0,
             // From none, of a wide source, to that of a point.
             near: random.next().abs().min(1.5) / 1.5,
             longitudinal: self.longitudinal.unwrap_or_else(|| random.next() > 0.0),
@@ -97,16 +102,19 @@ impl Path {
     pub(super) fn arrival(&self, time: f64, system: f64, unknown: &Unknown) -> Vec<f64> {
         // (q d)² is (2π f d/v)², with d/v = time/diameters.
         let bend = 0.5 * unknown.bend * (TAU * time / self.diameters).powi(2);
-        let wavelengths = (time * self.frequency).max(0.1);
-        let slowed = unknown.slowed * (self.loss * self.frequency) / wavelengths;
-        let dispersed = |f: f64| 1.0 + slowed + bend * f.powi(2).min((BOUND * self.frequency).powi(2));
-        let late = |f: f64| TAU * f * (system + time * dispersed(f));
-        let lost: Vec<Analytic> = self
-            .lines
-            .iter()
-            .zip(self.spectrum.frequencies())
-            .map(|(s, f)| s * (-self.loss * f).exp())
-            .collect();
+        // Losses that are proportional to the frequency make low frequencies slower, so that nothing arrives before the wave (Aki and
+        // Richards, eq. 5.81): by t/(π Q) = loss/π² per e-fold of the frequency. Losses by its square, as of viscous contacts and of
+        // scattering, that shift the mean frequency alike, make low frequencies as fast as others to first order.
+        let slowed = |f: f64| {
+            let folds = (f.max(f64::MIN_POSITIVE) / self.frequency).ln();
+            if unknown.is_of_constant_q { self.loss / PI.powi(2) * (unknown.slowed - folds) } else { 0.0 }
+        };
+        let loss =
+            |f: f64| self.loss * if unknown.is_of_constant_q { f } else { 0.5 * f.powi(2) / self.frequency };
+        let dispersed = |f: f64| 1.0 + bend * f.powi(2).min((BOUND * self.frequency).powi(2));
+        let late = |f: f64| TAU * f * (system + time * dispersed(f) + slowed(f));
+        let lost: Vec<Analytic> =
+            self.lines.iter().zip(self.spectrum.frequencies()).map(|(s, f)| s * (-loss(f)).exp()).collect();
         let mut far = self.spectrum.delayed(&lost, late);
         if unknown.near > 0.0 {
             // Between the arrivals of P and S a point source moves grains by ∫ τ f(t − τ) dτ/r³, twice along and −1 times across the path
@@ -116,7 +124,7 @@ impl Path {
             let steps = (to - from).ceil().max(1.0) as usize;
             let width = (to - from) / steps as f64;
             let mut near = vec![0.0; far.len()];
-            let source = self.spectrum.delayed(&lost, |f| TAU * f * system);
+            let source = self.spectrum.delayed(&lost, |f| TAU * f * (system + slowed(f)));
             for k in 0..steps {
                 let tau = from + (k as f64 + 0.5) * width;
                 let shift = tau.round() as usize;

@@ -1,5 +1,6 @@
 //! Picks with their bias and error.
 
+use super::ambient::rounding;
 use super::cleaned::{cleaned, thinned};
 use super::forward::Path;
 use super::passage::{Passage, Record};
@@ -20,6 +21,9 @@ const MAX_LOST: f64 = 0.25;
 /// Rounds in which the time at which the bias is found follows the time without it.
 const ROUNDS: usize = 2;
 
+/// Largest bias, periods: a computed record whose pick is off by more is of another period of the wave, which widens the error.
+const MAX_BIAS: f64 = 0.5;
+
 /// Difference of two picks, in standard deviations, above which they contradict each other.
 const APART: f64 = 3.0;
 
@@ -33,6 +37,14 @@ const BY_EYE: f64 = 0.15;
 
 /// Error of a shear wave with a signal just before it, periods over the ratio of both signals.
 const EARLIER: f64 = 2.0;
+
+/// Error of the time of a feature between samples, periods times the square of the samples in a period. Interpolation is of second order
+/// in the interval; at 4 samples in a period a feature is anywhere between two samples of the source, and of the receiver (√(2/12)).
+const SAMPLED: f64 = 1.6;
+
+/// Standard deviations by which a compression wave may come later than it begins to stand out. What exceeds them is an error, because
+/// another wave may precede the one that was picked.
+const FIRST: f64 = 1.0;
 
 /// Excess of that ratio over that of computed records which noise causes.
 const CHANCE: f64 = 0.05;
@@ -107,8 +119,8 @@ pub struct Picks {
     pub sign_doubt: f64,
     /// True if two picks are further apart than their errors allow; the errors are then as large as the difference.
     pub contradictory: bool,
-    /// Speed of the other candidate, m/s, where the largest wave follows the first strong one; the errors reach it. The larger is picked
-    /// where the wave is known to be S, else the first.
+    /// Speed of the other candidate, m/s; the errors reach it. Of P it is a weaker wave before the one that was picked, which may be noise.
+    /// Of S it is an earlier strong wave, which may be P. Without a mode it is the largest wave, where that follows the first strong one.
     pub other_speed: Option<f64>,
     /// Speed of the slowest wave that the record shows whole, m/s.
     pub slowest: f64,
@@ -123,8 +135,9 @@ pub struct Picks {
 /// # Errors
 /// Numbers out of range, and a record without an arrival that stands out of its noise by any pick.
 pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, AcousticsError> {
+    let rounding = rounding(&record.receiver, &record.quiet);
     let record = &thinned(record)?;
-    let (found, band) = cleaned(record, passage)?;
+    let (found, band) = cleaned(record, rounding, passage)?;
     let samples = found.source.len();
     let system = passage.delay * record.sample_rate;
     let pickers = [ArrivalPick::FirstArrival, ArrivalPick::CrossCorrelation, ArrivalPick::Peak].map(|pick| {
@@ -147,19 +160,25 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
     let typical = path.typical();
     let mut picks = Vec::new();
     let mut missing = Vec::new();
-    let (mut alike, mut opposite, mut early) = ([1.0; 2], 0.0, 0.0);
+    let (mut alike, mut opposite, mut early, mut first) = ([1.0; 2], 0.0, 0.0, None);
     for _ in 0..ROUNDS {
         let expected = path.arrival(time, system, &typical);
         let copy = |k: u64| {
             let mut random = Noise::at(seed, &[PLACE, k]);
             let arrival = path.arrival(time, system, &path.drawn(&mut random));
-            let copy = found.with(&arrival, &record.quiet, passage, &band, || random.next());
+            let copy = found.with(&arrival, passage, &band, &mut random);
             let times = pickers.each_ref().map(|picker| delay(&copy, picker).ok());
-            (times, [fitted(&copy.receiver, &expected).0, copy.opposite, copy.early])
+            let begins = copy.begins.map(|begins| begins - system - time);
+            let shape = [fitted(&copy.receiver, &expected).0, copy.opposite, copy.early];
+            ComputedPick { times, shape, begins }
         };
-        let (copies, shapes): (Vec<[Option<f64>; 3]>, Vec<[f64; 3]>) =
-            (0..COPIES).into_par_iter().map(copy).unzip();
-        let mean = |k: usize| shapes.iter().map(|shape| shape[k]).sum::<f64>() / COPIES as f64;
+        let copies: Vec<ComputedPick> = (0..COPIES).into_par_iter().map(copy).collect();
+        first = found.begins.map(|observed| {
+            let errors: Vec<f64> = copies.iter().filter_map(|copy| copy.begins).collect();
+            let [late, stddev] = bias(&errors, MAX_BIAS / band.frequency);
+            (observed - system - late + FIRST * stddev) / record.sample_rate
+        });
+        let mean = |k: usize| copies.iter().map(|copy| copy.shape[k]).sum::<f64>() / COPIES as f64;
         alike = [fitted(&found.receiver, &expected).0, mean(0)];
         opposite = mean(1);
         early = found.early - mean(2);
@@ -167,11 +186,15 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
         missing.clear();
         for (k, observed) in observed.iter().enumerate() {
             let method = pickers[k].0;
-            let errors: Vec<f64> = copies.iter().filter_map(|c| c[k]).map(|t| t - system - time).collect();
+            let errors: Vec<f64> =
+                copies.iter().filter_map(|copy| copy.times[k]).map(|t| t - system - time).collect();
             let lost = 1.0 - errors.len() as f64 / COPIES as f64;
             match observed {
                 Ok(_) if lost > MAX_LOST => missing.push((method, "the noise is too large".to_owned())),
-                Ok(late) => picks.push(pick(method, late - system, &errors, record.sample_rate, passage)),
+                Ok(late) => {
+                    let of_copies = bias(&errors, MAX_BIAS / band.frequency).map(|t| t / record.sample_rate);
+                    picks.push(Pick::new(method, (late - system) / record.sample_rate, of_copies, passage));
+                }
                 Err(reason) => missing.push((method, reason.clone())),
             }
         }
@@ -181,7 +204,8 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
     }
     let period = 1.0 / (band.frequency * record.sample_rate);
     let whole = (samples as f64 - band.from as f64 - band.duration - system).max(1.0) / record.sample_rate;
-    let unlike = (alike[1] - alike[0]).max(0.0) * period;
+    // Over the mean, which noise makes smaller, so that noise does not make the difference smaller.
+    let unlike = (1.0 - alike[0] / alike[1]).max(0.0) * period;
     let sign_doubt = ((found.opposite - opposite) / (1.0 - opposite).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
     for p in &mut picks {
         let (part, doubt) = match p.method {
@@ -191,9 +215,13 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
         let may_be_s = f64::from(passage.longitudinal != Some(true));
         let early = may_be_s * EARLIER * (early - CHANCE).max(0.0) * period;
         let unseen = UNSEEN * (p.time - whole).max(0.0);
-        let time_stddev = p.time_stddev.hypot(part[1] * unlike).hypot(doubt).hypot(early).hypot(unseen);
         let late = part[0] * unlike;
-        *p = Pick { time: p.time - late, bias: p.bias + late, time_stddev, ..*p }.with_speed(passage);
+        let time = p.time - late;
+        let after = first.map_or(0.0, |first: f64| (time - first).max(0.0));
+        let sampled = SAMPLED * band.frequency.powi(2) * period;
+        let errors = [p.time_stddev, part[1] * unlike, doubt, early, unseen, after, sampled];
+        let time_stddev = errors.iter().map(|e| e * e).sum::<f64>().sqrt();
+        *p = Pick { time, bias: p.bias + late, time_stddev, ..*p }.with_speed(passage);
     }
     // An onset is found in any signal: the wave is that of another pick.
     if picks.iter().all(|p| p.method == WaveMethod::FirstArrival) {
@@ -244,7 +272,7 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
         missing,
         frequency,
         wavelengths,
-        signal_to_noise: largest(&found.receiver) / found.noise,
+        signal_to_noise: largest(&found.receiver) / found.ambient.rms,
         reversed: found.reversed,
         crosstalk: found.crosstalk,
         is_cut: found.is_cut,
@@ -263,19 +291,39 @@ fn least(picks: &[Pick]) -> Option<usize> {
     (0..picks.len()).min_by(|a, b| picks[*a].time_stddev.total_cmp(&picks[*b].time_stddev))
 }
 
-/// A pick of a feature that is `late` (samples), with the errors of the same pick in computed records.
-fn pick(method: WaveMethod, late: f64, errors: &[f64], rate: f64, passage: &Passage) -> Pick {
+/// What is picked in one computed record.
+struct ComputedPick {
+    /// Time of each picker, samples; `None` without a pick.
+    times: [Option<f64>; 3],
+    /// Agreement with the expected arrival, with its negative, and signal before the onset over the signal after it.
+    shape: [f64; 3],
+    /// Beginning of the wave later than the computed one, samples.
+    begins: Option<f64>,
+}
+
+/// Returns the mean error of a pick in computed records, which is at most `most`, and the standard deviation about it.
+///
+/// The mean leaves out errors that are further than `most` from their median.
+fn bias(errors: &[f64], most: f64) -> [f64; 2] {
     let n = errors.len() as f64;
-    let bias = errors.iter().sum::<f64>() / n;
+    let mut sorted = errors.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let median = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+    let near: Vec<f64> = sorted.into_iter().filter(|e| (e - median).abs() <= most).collect();
+    let bias = (near.iter().sum::<f64>() / near.len() as f64).clamp(-most, most);
     let variance = errors.iter().map(|e| (e - bias).powi(2)).sum::<f64>() / (n - 1.0);
-    let (time, time_stddev) = ((late - bias) / rate, (variance * (1.0 + 1.0 / n)).sqrt() / rate);
-    let bias = bias / rate;
-    let [speed, speed_stddev, speed_common_stddev, apart] = [0.0; 4];
-    Pick { method, time, time_stddev, bias, speed, speed_stddev, speed_common_stddev, apart }
-        .with_speed(passage)
+    [bias, (variance * (1.0 + 1.0 / n)).sqrt()]
 }
 
 impl Pick {
+    /// A pick of a feature after the time `read`, s, less its bias, s.
+    fn new(method: WaveMethod, read: f64, [bias, time_stddev]: [f64; 2], passage: &Passage) -> Self {
+        let [speed, speed_stddev, speed_common_stddev, apart] = [0.0; 4];
+        let time = read - bias;
+        Self { method, time, time_stddev, bias, speed, speed_stddev, speed_common_stddev, apart }
+            .with_speed(passage)
+    }
+
     fn with_speed(self, passage: &Passage) -> Self {
         let speed = passage.distance / self.time;
         let of = |time_stddev: f64| {
@@ -290,5 +338,20 @@ impl Pick {
     /// Part of the standard deviation of the speed that is of this record alone, m/s.
     pub fn speed_own_stddev(&self) -> f64 {
         (self.speed_stddev.powi(2) - self.speed_common_stddev.powi(2)).max(0.0).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn computed_records_whose_pick_is_off_by_a_period_widen_the_error_and_do_not_move_the_pick() {
+        let errors: Vec<f64> =
+            (0..64).map(|k| if k % 5 == 0 { -10.0 } else { f64::from(k % 3) * 0.1 }).collect();
+        let [found, stddev] = bias(&errors, 5.0);
+        assert!((found - 0.1).abs() < 0.02, "{found}");
+        assert!((stddev - 10.0 * (13.0f64 / 64.0).sqrt()).abs() < 0.5, "{stddev}");
+        assert_eq!(bias(&[-9.0; 64], 5.0)[0], -5.0);
     }
 }

@@ -28,7 +28,8 @@ impl Spectrum {
         Self { samples, forward, back, finer }
     }
 
-    fn padded(&self) -> usize {
+    /// Number of the frequencies of a spectrum, of either sign.
+    pub(crate) fn padded(&self) -> usize {
         self.forward.len()
     }
 

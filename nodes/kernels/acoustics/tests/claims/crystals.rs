@@ -139,5 +139,18 @@ fn a_chain_has_its_dispersion_relation_and_resists_nothing_across() {
     assert_closed_form(&along, "P", |q| 4.0 * k.normal / k.mass * (0.5 * q * branch).sin().powi(2));
     let ray = Ray { direction: Vec3::z(), indices: None, polarizations: vec![Vec3::x()] };
     let error = curves(&packing, &[ray], &Settings::default()).unwrap_err();
-    assert!(matches!(error, grainlab_acoustics::AcousticsError::NotJammed(_)), "{error}");
+    assert!(matches!(error, grainlab_acoustics::AcousticsError::NoStiffness(_)), "{error}");
+}
+
+/// A chain whose grains overlap by a tenth of a diameter and more has no contact law, and no waves.
+#[test]
+fn grains_that_overlap_beyond_every_contact_law_have_no_waves() {
+    let branch = 1.78 * RADIUS;
+    let cell = Mat3::from_diagonal(&Vec3::new(4.0 * RADIUS, 4.0 * RADIUS, 5.0 * branch));
+    let positions: Vec<Vec3> = (0..5).map(|k| Vec3::new(0.5, 0.5, k as f64 / 5.0)).collect();
+    let mut packing = crystal(cell, &positions);
+    packing.contacts.iter_mut().for_each(|c| c.overlap = 0.22 * RADIUS);
+    let error = grainlab_acoustics::measure(&packing, &grainlab_acoustics::Settings::default()).unwrap_err();
+    let none = grainlab_core::results::NoStiffness::TooDeep;
+    assert_eq!(error, grainlab_acoustics::AcousticsError::NoStiffness(none));
 }

@@ -1,31 +1,12 @@
 //! The dispersion of real packings has the static stiffness as its long-wave limit.
 
-use crate::sample;
+use crate::sample::{self, minimal, stiffness, surveys};
 use grainlab_acoustics::dispersion::{self, curves};
 use grainlab_acoustics::{
-    AcousticsError, DispersionCurve, Measurement, MethodSettings, Modes, Ray, Settings, Survey, measure,
+    AcousticsError, DispersionCurve, MethodSettings, Modes, Ray, Settings, Survey, measure,
 };
-use grainlab_core::{Packing, Stiffness, Vec3};
+use grainlab_core::{Stiffness, Vec3};
 use grainlab_emt::{Conditions, Measured, Modulus, christoffel};
-use std::sync::LazyLock;
-
-fn stiffness(packing: &Packing) -> Stiffness {
-    grainlab_micromechanics::analyze(packing, &grainlab_micromechanics::Settings::default())
-        .unwrap()
-        .report
-        .stiffness()
-        .unwrap()
-        .tensor
-}
-
-/// The speeds of both packings with default settings agree with their static stiffness.
-fn surveys() -> &'static [(Measurement, Stiffness); 2] {
-    static SURVEYS: LazyLock<[(Measurement, Stiffness); 2]> = LazyLock::new(|| {
-        [sample::isotropic(), sample::anisotropic()]
-            .map(|packing| (measure(&packing, &Settings::default()).unwrap(), stiffness(&packing)))
-    });
-    &SURVEYS
-}
 
 /// ρ v² from the stiffness for the direction and polarization of this curve, Pa.
 fn modulus(c: &Stiffness, curve: &DispersionCurve) -> f64 {
@@ -68,13 +49,12 @@ fn christoffel_gives_the_moduli_of_the_transversely_isotropic_projection() {
 
 #[test]
 fn the_law_of_the_extrapolation_holds_at_all_long_waves() {
-    let packing = sample::anisotropic();
     let rays = Survey::Minimal.rays(&Vec3::z(), Modes::All);
-    let far = dispersion::Settings::default();
     let wavelengths = vec![60.0, 100.0, 160.0, 640.0];
-    let near = dispersion::Settings { wavelengths, doublings: 0, ..far.clone() };
-    let (far, near) = (curves(&packing, &rays, &far).unwrap(), curves(&packing, &rays, &near).unwrap());
-    for (law, seen) in far.iter().zip(&near) {
+    let near = dispersion::Settings { wavelengths, doublings: 0, ..dispersion::Settings::default() };
+    let near = curves(&sample::anisotropic(), &rays, &near).unwrap();
+    assert_eq!(near.len(), minimal().curves.len());
+    for (law, seen) in minimal().curves.iter().zip(&near) {
         for point in &seen.points {
             // Below 100 diameters, loosely held grains stop following the wave one by one.
             let allowed = if point.wavenumber * 2e-4 < 0.045 { 5e-5 } else { 2e-3 };
@@ -100,18 +80,6 @@ fn without_an_axis_every_mode_is_measured_as_it_is() {
 }
 
 #[test]
-fn what_was_asked_for_is_measured_and_nothing_else() {
-    let packing = sample::isotropic();
-    let of = |modes| {
-        measure(&packing, &Settings { modes, survey: Survey::Minimal, ..Settings::default() }).unwrap()
-    };
-    let (p, s) = (of(Modes::Compression), of(Modes::Shear));
-    assert_eq!((p.waves.len(), s.waves.len()), (3, 6));
-    assert!(p.waves.iter().all(|w| w.wave.direction.dot(&w.wave.polarization) > 0.99));
-    assert!(s.waves.iter().all(|w| w.wave.direction.dot(&w.wave.polarization).abs() < 1e-9));
-}
-
-#[test]
 fn rattlers_do_not_move_and_grains_that_turn_freely_move_less() {
     let (packing, moving) = (sample::isotropic(), surveys()[0].0.effective_density.mean());
     let carried =
@@ -124,13 +92,7 @@ fn rattlers_do_not_move_and_grains_that_turn_freely_move_less() {
 
 #[test]
 fn two_threads_give_the_bits_of_one() {
-    let packing = sample::anisotropic();
-    let settings = Settings { survey: Survey::Minimal, ..Settings::default() };
-    let with = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| measure(&packing, &settings).unwrap())
-    };
-    assert_eq!(with(1), with(2));
+    assert_eq!(&sample::minimal_by(1), minimal());
 }
 
 #[test]

@@ -1,10 +1,11 @@
 //! Tests of the virtual acoustic measurement.
 
+mod computed_records;
 mod crystals;
 mod dispersion;
-mod golden_packing;
 mod instrument;
 mod modes;
+mod pick_coverage;
 mod picks;
 mod records;
 mod sample;

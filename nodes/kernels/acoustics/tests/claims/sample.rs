@@ -1,18 +1,46 @@
 //! Packings for the measurements.
 
-use crate::golden_packing::read;
-use grainlab_core::Packing;
-
-const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../tests/golden/packings");
+use grainlab_acoustics::{Measurement, Settings, Survey, measure};
+use grainlab_core::{Packing, Stiffness};
+use grainlab_testkit::golden;
+use std::sync::LazyLock;
 
 /// 2,000 grains at 50 kPa with an isotropic contact network.
 pub(crate) fn isotropic() -> Packing {
-    read(FOLDER, "isotropic_2000")
+    golden::packing("packings/isotropic_2000")
 }
 
 /// 2,000 grains at 50 kPa with more contacts along e3, ε = .046.
 pub(crate) fn anisotropic() -> Packing {
-    read(FOLDER, "anisotropic_2000")
+    golden::packing("packings/anisotropic_2000")
+}
+
+/// The stiffness of the frozen contact network.
+pub(crate) fn stiffness(packing: &Packing) -> Stiffness {
+    let settings = grainlab_micromechanics::Settings::default();
+    grainlab_micromechanics::analyze(packing, &settings).unwrap().report.stiffness().unwrap().tensor
+}
+
+/// The speeds of both packings with default settings, and their static stiffness.
+pub(crate) fn surveys() -> &'static [(Measurement, Stiffness); 2] {
+    static SURVEYS: LazyLock<[(Measurement, Stiffness); 2]> = LazyLock::new(|| {
+        [isotropic(), anisotropic()]
+            .map(|packing| (measure(&packing, &Settings::default()).unwrap(), stiffness(&packing)))
+    });
+    &SURVEYS
+}
+
+/// The second packing along three rays, by two threads.
+pub(crate) fn minimal() -> &'static Measurement {
+    static MINIMAL: LazyLock<Measurement> = LazyLock::new(|| minimal_by(2));
+    &MINIMAL
+}
+
+/// The measurement of [`minimal`] by other threads.
+pub(crate) fn minimal_by(threads: usize) -> Measurement {
+    let settings = Settings { survey: Survey::Minimal, ..Settings::default() };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| measure(&anisotropic(), &settings).unwrap())
 }
 
 #[test]

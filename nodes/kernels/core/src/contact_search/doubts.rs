@@ -1,18 +1,16 @@
-//! Differences between the contacts of a packing and those that its positions, its law and its friction give.
+//! Doubts about the contacts of a packing, by its positions, its law and its friction.
 
 use super::error::SearchError;
 use super::find::of_packing;
-use crate::{Contact, Packing};
+use crate::{Contact, OTHER_LAW, Packing};
 use std::collections::BTreeSet;
-
-/// Difference of normal forces from the contact law, relative and on average, above which they are of another law.
-const OTHER_LAW: f64 = 0.01;
 
 /// Relative margin of the Coulomb limit, for rounding.
 const BEYOND: f64 = 1e-3;
 
-/// Contacts that are only in the list or only in the positions, forces of another law, beyond the friction, or that pull. A
-/// sentence each; empty for a packing that its law can have made.
+/// Overlaps at which the law is doubtful, planes that few contacts cross, contacts that are only in the list or only in the
+/// positions, forces of another law, beyond the friction, or that pull. A sentence each; empty for a packing that its law can have
+/// made.
 ///
 /// # Errors
 /// As [`super::find`].
@@ -34,6 +32,8 @@ pub fn doubts(packing: &Packing) -> Result<Vec<String>, SearchError> {
         counted(packing, beyond, [&format!("1 contact carries {more}"), &format!("contacts carry {more}")]);
     let pulling = packing.contacts.iter().filter(|c| c.normal_force < 0.0);
     let found = [
+        packing.overlap_warning(),
+        packing.crossings_warning(),
         only(
             &found,
             &listed,
@@ -78,8 +78,8 @@ fn other_law(packing: &Packing) -> Option<String> {
     let difference = packing.law_difference();
     (difference > OTHER_LAW).then(|| {
         format!(
-            "normal forces differ from the contact law by {:.1} % on average: of another contact law, another material, or \
-             in motion; the stiffness is that of {} contacts of this material",
+            "normal forces differ from the contact law by {:.1} % on average: of another contact law, another material, \
+             rounded positions, or in motion; the stiffness is that of {} contacts of this material",
             100.0 * difference,
             packing.law.name()
         )

@@ -14,8 +14,10 @@ impl Packing {
         grains.checked_mul(times)?;
         let place = |copy: u32| [copy / (copies * copies), copy / copies % copies, copy % copies];
         let shift = |copy| matrix * Vec3::from(place(copy).map(f64::from));
-        let positions =
-            (0..times).flat_map(|copy| self.positions.iter().map(move |x| x + shift(copy))).collect();
+        let mut positions = Vec::with_capacity(self.grains() * times as usize);
+        for copy in 0..times {
+            positions.extend(self.positions.iter().map(|x| x + shift(copy)));
+        }
         let along = i64::from(copies);
         let mut contacts = Vec::with_capacity(self.contacts.len() * times as usize);
         for copy in 0..times {

@@ -60,11 +60,11 @@ pub struct StiffnessBounds {
 }
 
 /// The stiffness of a packing, or why it has none.
-pub type Elasticity = Result<Box<ElasticStiffness>, NotJammed>;
+pub type Elasticity = Result<Box<ElasticStiffness>, NoStiffness>;
 
-/// Why a packing has no stiffness. Not a fault: a gas has none.
+/// Why a packing has no stiffness. [`NoStiffness::is_fault`] tells what is wrong from what is loose: a gas has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NotJammed {
+pub enum NoStiffness {
     /// No two grains touch.
     #[error("no contact network: none of the {grains} grains touches another; compress the packing first")]
     NoContacts {
@@ -74,7 +74,7 @@ pub enum NotJammed {
     /// Every grain was removed as a rattler.
     #[error(
         "no contact network: all {grains} grains are rattlers (fewer than {needed} contacts each, found recursively); \
-         compress the packing first"
+         compress the packing first (contacts with walls do not count)"
     )]
     OnlyRattlers {
         /// Number of grains.
@@ -84,11 +84,27 @@ pub enum NotJammed {
     },
     /// Contacts exist but resist no deformation of the cell.
     #[error(
-        "no strain is resisted: the {contacts} contacts do not span the cell, or are too few for the springs that they have; \
-         compress the packing first"
+        "no strain is resisted, so that all moduli are 0: the {contacts} contacts do not span the cell, or are too few for the \
+         springs that they have; check friction and boundaries, or compress the packing first"
     )]
     Floppy {
         /// Number of contacts.
         contacts: usize,
     },
+    /// Grains overlap by more than [`OVERLAP_LIMIT`](crate::OVERLAP_LIMIT): no contact law holds.
+    #[error(
+        "grains overlap by more than {:.0} % of a diameter, where no contact law holds: there are no moduli",
+        100.0 * crate::OVERLAP_LIMIT
+    )]
+    TooDeep,
+    /// The stiffness could not be computed, or the result was withheld.
+    #[error("the stiffness could not be computed: the moduli are unknown")]
+    Unsolved,
+}
+
+impl NoStiffness {
+    /// Returns true if the packing or its measurement is at fault, rather than loose or open.
+    pub fn is_fault(&self) -> bool {
+        matches!(self, Self::TooDeep | Self::Unsolved)
+    }
 }

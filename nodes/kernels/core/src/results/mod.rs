@@ -27,7 +27,7 @@ mod warnings;
 pub use contact_statistics::{
     ContactStatistics, FORCE_BIN_WIDTH, FORCE_BINS, ForceStatistics, MOBILISATION_BINS, MobilisedFriction,
 };
-pub use elastic_stiffness::{ElasticStiffness, Elasticity, NotJammed, StiffnessBounds, StiffnessMethod};
+pub use elastic_stiffness::{ElasticStiffness, Elasticity, NoStiffness, StiffnessBounds, StiffnessMethod};
 pub use fabric::{
     Fabric, FourthOrderFabric, ORIENTATION_BINS, OrientationFit, OrientationHistogram, OverlapAnisotropyFit,
     PrincipalAxis, contact_anisotropy,
@@ -38,4 +38,4 @@ pub use quantities::QUANTITIES;
 pub use spring_notes::SpringNote;
 pub use strain_ratios::StrainRatios;
 pub use stress_decomposition::{StressDecomposition, StressForceFabric, SubNetwork};
-pub use warnings::{report_warnings, warnings, yields};
+pub use warnings::{geometry_warnings, report_warnings, warnings, yields};

@@ -1,7 +1,7 @@
 //! Warnings about a measured packing.
 
 use super::{ElasticStiffness, PackingReport};
-use crate::{Packing, Vec3, contact_search, non_rattlers};
+use crate::{Packing, SymmetryClass, Vec3, contact_search, non_rattlers, solid_like_share};
 use std::collections::HashMap;
 
 /// Unbalanced force ratio above which a packing is not at rest, so that the stiffness of the network is not
@@ -12,8 +12,14 @@ const RESTLESS: f64 = 0.01;
 /// Ratio of the kinetic energy to half the sum of normal force times overlap, above which a packing is in motion. Packings at rest are below 1e-6.
 const MOVING: f64 = 0.01;
 
-/// Solid fraction above which spheres of nearly one size are not packed at random, with room for their overlaps.
-const RANDOM: f64 = 0.67;
+/// Share of solid-like grains above which a packing is a crystal in part: random packings of one size have at most 0.02.
+const CRYSTALLINE: f64 = 0.1;
+
+/// Number of solid-like grains from which they are a crystal: one has at least eight neighbours with its order.
+const NUCLEUS: f64 = 9.0;
+
+/// Width of the cell, in mean diameters, from which no grain is a neighbour of another one on two sides.
+const WIDE: f64 = 2.4;
 
 /// Solid fraction above which spheres of any sizes would overlap by large parts of their radii.
 const FULL: f64 = 0.95;
@@ -39,6 +45,12 @@ const CRYSTAL: usize = 20;
 /// Relative margin of the lower bound of Θ: for packings whose stress is not exactly isotropic.
 const BELOW: f64 = 1e-3;
 
+/// Standard deviations of ε about a fixed axis by which ε about the principal axis exceeds ε about the reference axis, and least
+/// difference, from which the contacts have another axis. Contacts in all directions alike have up to 3 standard deviations about
+/// their most distinct axis.
+const ANOTHER_AXIS: f64 = 4.0;
+const LEAST_EPS: f64 = 0.01;
+
 /// Smallest eigenvalue of a stiffness, over the largest entry of the affine one, below which it is rounding: packings near
 /// isostaticity have 1e-3 and more.
 const NO_RESISTANCE: f64 = 1e-6;
@@ -47,8 +59,15 @@ const NO_RESISTANCE: f64 = 1e-6;
 /// positions, its law or its friction contradict, bounds that do not hold. None for most packings at rest.
 pub fn warnings(packing: &Packing, report: &PackingReport) -> Vec<String> {
     let contacts = contact_search::doubts(packing).unwrap_or_else(|e| vec![e.to_string()]);
-    let others = [moving(packing), twisted(packing, report), copied(packing)].into_iter().flatten();
-    report_warnings(report).into_iter().chain(others).chain(contacts).collect()
+    let others = [moving(packing), twisted(packing, report), copied(packing), crystalline(packing)];
+    report_warnings(report).into_iter().chain(others.into_iter().flatten()).chain(contacts).collect()
+}
+
+/// Returns warnings about the geometry of a packing at rest, which any recorded packing may have: deep overlaps, contacts that
+/// do not cross the cell, crystals.
+pub fn geometry_warnings(packing: &Packing) -> Vec<String> {
+    let found = [packing.overlap_warning(), packing.crossings_warning(), crystalline(packing)];
+    found.into_iter().flatten().collect()
 }
 
 fn restless(report: &PackingReport) -> Option<String> {
@@ -198,25 +217,68 @@ fn unresisted(report: &PackingReport) -> Option<String> {
     })
 }
 
-/// Random packings of spheres of nearly one size have a solid fraction of at most .64 at small pressures.
-fn crystalline(report: &PackingReport) -> Option<String> {
+fn overfull(report: &PackingReport) -> Option<String> {
     let phi = report.solid_fraction;
-    if phi > FULL {
-        return Some(format!(
-            "solid fraction {phi:.3}: no grains fill a cell so far; check the units of cell and radii"
-        ));
-    }
-    (report.size_spread < EQUAL_SIZES && phi > RANDOM).then(|| {
+    (phi > FULL).then(|| {
+        format!("solid fraction {phi:.3}: no grains fill a cell so far; check the units of cell and radii")
+    })
+}
+
+/// Judged by the surroundings of the grains, because overlaps also raise the solid fraction of random packings.
+fn crystalline(packing: &Packing) -> Option<String> {
+    let diameter = 2.0 * packing.radii.iter().sum::<f64>() / packing.grains() as f64;
+    let is_wide = (0..3).all(|k| packing.cell.width(k) >= WIDE * diameter);
+    let share =
+        (is_wide && packing.size_spread() < EQUAL_SIZES).then(|| solid_like_share(packing).ok())??;
+    (share > CRYSTALLINE && share * packing.grains() as f64 >= NUCLEUS - 0.5).then(|| {
         format!(
-            "solid fraction {phi:.3} is above that of random packings of spheres of one size (0.64): the grains have \
-             crystallised in part, as they do in small cells; the inversion was calibrated on random packings"
+            "{:.0} % of the grains have the surroundings of a crystal (by bond-orientational order; in random packings at most a few \
+             have): they have crystallised, as grains of one size do in small cells and at flat walls; the inversion was calibrated \
+             on random packings",
+            100.0 * share
         )
     })
+}
+
+/// A note on a packing whose anisotropy has another axis than the reference axis, beyond its noise.
+fn another_axis(report: &PackingReport) -> Option<String> {
+    let (fabric, axis) = (&report.fabric, &report.fabric.principal_axis);
+    let stddev = axis.contact_anisotropy_stddev?;
+    let beyond = axis.contact_anisotropy.abs() - fabric.contact_anisotropy.abs();
+    let symmetry = report.symmetry.as_ref();
+    let class = symmetry.map(|s| s.class);
+    let is_alike = matches!(class, Some(SymmetryClass::Isotropic | SymmetryClass::Cubic));
+    if is_alike || beyond <= (ANOTHER_AXIS * stddev).max(LEAST_EPS) {
+        return None;
+    }
+    // The axis of the stiffness, where it has one, scatters less.
+    let is_axial = class == Some(SymmetryClass::TransverselyIsotropic);
+    let found = symmetry.filter(|_| is_axial).map_or(axis.direction, |s| s.axis);
+    let named = |v: &Vec3| format!("({:.2}, {:.2}, {:.2})", v.x, v.y, v.z);
+    let angle = found.dot(&fabric.reference_axis).abs().min(1.0).acos().to_degrees();
+    Some(format!(
+        "the packing has its axis at {}, {angle:.0} degrees from the axis {} of eps, G12, G13 and the estimates: the contacts have eps {:.3} \
+         +- {stddev:.3} about {}, their own axis, and {:.3} about the one used; measure it by analyze --axis {:.2},{:.2},{:.2}",
+        named(&found),
+        named(&fabric.reference_axis),
+        axis.contact_anisotropy,
+        named(&axis.direction),
+        fabric.contact_anisotropy,
+        found.x,
+        found.y,
+        found.z
+    ))
 }
 
 /// Warnings that follow from the report of a packing alone.
 pub fn report_warnings(report: &PackingReport) -> Vec<String> {
     let springs = report.spring_notes().into_iter().map(|note| format!("stiffness {note}"));
-    let others = [restless(report), below_its_bound(report), unresisted(report), crystalline(report)];
+    let others = [
+        restless(report),
+        below_its_bound(report),
+        unresisted(report),
+        overfull(report),
+        another_axis(report),
+    ];
     others.into_iter().flatten().chain(springs).collect()
 }

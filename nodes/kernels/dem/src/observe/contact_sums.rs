@@ -5,11 +5,9 @@ use crate::pairs::types::{PairBlock, PairSizes};
 use crate::simd::instruction_set::Simd;
 use crate::simd::kernel::Kernel;
 use crate::simd::simd_f64::{BLOCK_SIZE, SimdF64, load_vector, store_vector};
+use grainlab_core::OVERLAP_LIMIT;
 use grainlab_core::contact::ContactSprings;
 use grainlab_core::lanes::{LaneVec3, Lanes};
-
-/// A contact that overlaps by more than this fraction of the smaller diameter is outside Hertz's law.
-pub const OVERLAP_LIMIT: f64 = 0.1;
 
 /// The contacts of one chunk.
 pub(super) struct ChunkContacts<'a, S> {

@@ -2,11 +2,10 @@
 //! tangential springs, across images too (a code that moves grains with the cell but leaves their velocities alone
 //! measures a shear modulus 43 % too low), and affine estimates must not be taken for moduli.
 
-use crate::support::*;
 use grainlab_core::Packing;
 use grainlab_core::contact::TangentialLaw;
-use grainlab_dem::Engine;
 use grainlab_micromechanics::{Settings, analyze};
+use grainlab_testkit::engine::*;
 
 /// A packing at rest, to the last digits.
 fn sample() -> Packing {
@@ -17,8 +16,7 @@ fn sample() -> Packing {
 fn probe(p: &Packing, k: usize, strain: f64) -> [f64; 6] {
     let mut s = setting(f64::INFINITY, p.time_step);
     (s.tangential, s.damping, s.drag, s.spin_drag) = (TangentialLaw::Incremental, 0.3, 5e4, 5e4);
-    let mut e = Engine::from_packing(p, s).unwrap();
-    e.initialise().unwrap();
+    let mut e = taken_up(p, s);
     let mut rate = [0.0; 6];
     rate[k] = strain / (1000.0 * p.time_step);
     e.set_rate(&rate).unwrap();
@@ -56,8 +54,7 @@ fn moduli_from_straining_are_those_of_the_network() {
 fn the_tangent_of_a_snapshot_is_the_affine_stiffness() {
     let p = sample();
     let affine = analyze(&p, &Settings::default()).unwrap().report.stiffness().unwrap().bounds.affine.0;
-    let mut e = Engine::from_packing(&p, setting(0.3, p.time_step)).unwrap();
-    e.initialise().unwrap();
+    let e = taken_up(&p, setting(0.3, p.time_step));
     let seen = e.observables().unwrap();
     for k in 0..6 {
         assert!(

@@ -1,9 +1,10 @@
 //! Run 2N is run N, save, load, run N, bit for bit; and looking changes nothing.
 
-use crate::support::*;
-use grainlab_core::contact::TangentialLaw;
+use grainlab_core::contact::{RollingResistance, TangentialLaw};
 use grainlab_core::{Packing, ServoLaw};
 use grainlab_dem::{Engine, EngineSettings, Features, TimeStep};
+use grainlab_testkit::Random;
+use grainlab_testkit::engine::*;
 
 const PERIOD: usize = 7;
 const RATE: [f64; 6] = [-30.0, -20.0, -25.0, 4.0, -6.0, 5.0];
@@ -33,7 +34,7 @@ fn settings() -> Vec<EngineSettings> {
 /// A packing on its way: pressed on from a loose one, so that contacts come, go and slide.
 fn start(p: &Packing, s: EngineSettings) -> Engine {
     let mut e = Engine::from_packing(p, s).unwrap();
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     e.set_velocities(&(0..p.grains()).map(|_| random.vector(0.02)).collect::<Vec<_>>()).unwrap();
     e.set_rate(&RATE).unwrap();
     e.initialise().unwrap();
@@ -68,15 +69,18 @@ fn reloaded(e: &Engine, s: EngineSettings) -> Engine {
 /// step is looked at anew.
 #[test]
 fn a_state_saved_and_loaded_goes_on_bit_for_bit() {
-    let loose = Sample::Loose.packing();
+    let plain = Sample::Loose.packing();
+    let law = plain.law.with_rolling(RollingResistance { stiffness: 1e4, damping: 1e-3, friction: 0.1 });
+    let rolling = Packing { law, ..plain.clone() };
     let (mut contacts, mut sliding) = (0, 0);
     for s in settings() {
+        let loose = if s.tangential == TangentialLaw::Incremental { &rolling } else { &plain };
         for drive in [Drive::Strained, Drive::Servoed] {
-            let mut e = start(&loose, s);
+            let mut e = start(loose, s);
             let origin = e.steps();
             for n in [1u64, 6, 7, 50, 199, 200, 201, 1000] {
                 let (at, end) = (origin + n, origin + 2 * n);
-                let mut whole = start(&loose, s);
+                let mut whole = start(loose, s);
                 run(&mut whole, drive, origin, end, false);
                 run(&mut e, drive, origin, at, false);
                 let mut second = reloaded(&e, s);
@@ -85,6 +89,13 @@ fn a_state_saved_and_loaded_goes_on_bit_for_bit() {
                 let what = format!("{:?} {:?} {drive:?}, N = {n}", s.features(), s.tangential);
                 assert!(bits(&packing(&second)) == bits(&packing(&whole)), "{what}");
                 assert_eq!(second.observables(), whole.observables(), "{what}");
+                // Back to a checkpoint.
+                let (mut third, checkpoint) = (e.clone(), e.checkpoint());
+                run(&mut third, drive, origin, at + 3, false);
+                third.restore(checkpoint).unwrap();
+                third.initialise().unwrap();
+                run(&mut third, drive, origin, end, false);
+                assert!(bits(&packing(&third)) == bits(&packing(&whole)), "back to a checkpoint: {what}");
             }
             let p = packing(&e);
             contacts += p.contacts.len();

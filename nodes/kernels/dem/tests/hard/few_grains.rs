@@ -1,9 +1,9 @@
 //! One grain, two grains, and a box barely above two diameters.
 
-use crate::support::*;
 use grainlab_core::contact::TangentialLaw;
 use grainlab_core::{Cell, Vec3};
 use grainlab_dem::TimeStep;
+use grainlab_testkit::engine::*;
 
 /// Expected: alone, it keeps its velocity relative to a resting cell; in a straining one v = exp(−L t) v0.
 #[test]

@@ -1,9 +1,9 @@
 //! The tangential history inside the engine: what changes it and what must not, and the work of closed cycles.
 
-use crate::support::*;
 use grainlab_core::contact::TangentialLaw;
 use grainlab_core::{Cell, SymTensor, Vec3};
 use grainlab_dem::Engine;
+use grainlab_testkit::engine::*;
 
 const OVERLAP: f64 = 4e-8;
 const DT: f64 = 1e-9;
@@ -60,58 +60,5 @@ fn the_tangential_force_does_not_change_when_only_the_normal_overlap_grows() {
             TangentialLaw::Incremental => 1.0,
         };
         assert!((kept / expected - 1.0).abs() < 1e-6, "{tangential:?}: {kept} {expected}");
-    }
-}
-
-/// Work done on the pair, J, over legs of (approach, slip) in m, by −V σ:dE and the trapezium rule; over its elastic
-/// energy at the start.
-fn work(e: &mut Engine, legs: &[(f64, f64)]) -> f64 {
-    let start = energy(&packing(e));
-    let mut work = 0.0;
-    for (depth, slip) in legs {
-        let pieces = 50;
-        for _ in 0..pieces {
-            let p = packing(e);
-            let (before, volume) = (grainlab_core::stress::stress(&p).tensor.matrix(), p.cell.volume());
-            let a =
-                approach(e, depth / f64::from(pieces)).matrix() + shear(slip / f64::from(pieces)).matrix();
-            let step = SymTensor::symmetric_part(&a);
-            strain(e, &step, 8);
-            let after = e.observables().unwrap().stress.tensor.matrix();
-            work -= 0.5 * volume * ((before + after) * step.matrix()).trace();
-        }
-    }
-    work / start
-}
-
-/// Expected: no cycle of pressing and shearing, in any order, yields work with the rescaled history; the incremental one
-/// yields work on the cycle that shears under high load and shears back under low.
-#[test]
-fn no_closed_cycle_of_strains_yields_work_with_the_rescaled_history() {
-    let pump = [(2.0 * OVERLAP, 0.0), (0.0, 8e-9), (-2.0 * OVERLAP, 0.0), (0.0, -8e-9)];
-    let rescaled = work(&mut led(TangentialLaw::Rescaled, f64::INFINITY), &pump);
-    let incremental = work(&mut led(TangentialLaw::Incremental, f64::INFINITY), &pump);
-    assert!(rescaled > 1e-3, "rescaled {rescaled}");
-    assert!(incremental < -1e-3, "incremental {incremental}");
-    let mut random = Random(11);
-    for friction in [0.1, 0.5, f64::INFINITY] {
-        let mut dissipated = 0.0f64;
-        for cycle in 0..40 {
-            // Three legs there and their opposites, shuffled, normal and tangential apart.
-            let mut legs: Vec<(f64, f64)> = Vec::new();
-            for _ in 0..3 {
-                let (depth, slip) = (random.between(0.0, 0.5) * OVERLAP, random.between(-8e-9, 8e-9));
-                legs.extend([(depth, 0.0), (-depth, 0.0), (0.0, slip), (0.0, -slip)]);
-            }
-            (1..legs.len()).rev().for_each(|k| legs.swap(k, (random.unit() * (k + 1) as f64) as usize));
-            let mut e = led(TangentialLaw::Rescaled, friction);
-            // Never out of contact, whatever the order: 1.5 overlaps at most are taken off three and a half.
-            let closer = approach(&e, 2.5 * OVERLAP);
-            strain(&mut e, &closer, 50);
-            let gained = work(&mut e, &legs);
-            assert!(gained > -1e-5, "friction {friction}, cycle {cycle}: {gained}");
-            dissipated = dissipated.max(gained);
-        }
-        assert!(dissipated > 1e-4, "friction {friction}: cycles dissipate, {dissipated}");
     }
 }

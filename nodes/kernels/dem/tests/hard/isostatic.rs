@@ -1,8 +1,8 @@
 //! A packing near isostaticity.
 
-use crate::support::*;
 use grainlab_core::{ServoLaw, non_rattlers};
-use grainlab_dem::{Engine, TimeStep};
+use grainlab_dem::TimeStep;
+use grainlab_testkit::engine::*;
 
 /// Expected: under p → 0 a frictionless packing keeps just the contacts that balance needs, 3 (N − 1) forces and 6
 /// stresses, and the servo still settles it.
@@ -12,8 +12,7 @@ fn a_frictionless_packing_at_ten_pascal_has_just_the_contacts_that_balance_needs
     let mut s = setting(0.0, 0.0);
     s.time_step = TimeStep::FractionOfStable(0.8);
     (s.damping, s.drag) = (0.3, 2e3);
-    let mut e = Engine::from_packing(&pressed, s).unwrap();
-    e.initialise().unwrap();
+    let mut e = taken_up(&pressed, s);
     let mut excess = Vec::new();
     for pressure in [1e5, 1e3, 10.0] {
         for period in 0..200_000 {

@@ -1,8 +1,9 @@
 //! Parameters at their ends: no pressure, no friction, friction without limit, a strain step beyond the overlap.
 
-use crate::support::*;
-use grainlab_core::{Cell, Vec3};
+use grainlab_core::contact::RollingResistance;
+use grainlab_core::{Cell, Packing, Vec3};
 use grainlab_dem::Engine;
+use grainlab_testkit::engine::*;
 
 fn cubic(overlap: f64) -> Engine {
     let mut s = setting(0.3, 0.0);
@@ -44,31 +45,32 @@ fn as_pressure_goes_to_zero_stress_follows_hertz_until_the_last_bit() {
     }
 }
 
-/// Expected: without friction no contact carries a tangential force and no grain a spin, also where the phase before
-/// had both.
+/// Expected: without friction no contact carries a tangential or a rolling force and no grain a spin, also where the phase
+/// before had all of them.
 #[test]
 fn without_friction_there_is_neither_spin_nor_tangential_force() {
     let p = Sample::Pressed.packing();
-    let mut e = Engine::from_packing(&p, setting(0.3, 2e-8)).unwrap();
-    e.initialise().unwrap();
+    let law = p.law.with_rolling(RollingResistance { stiffness: 1e4, damping: 1e-3, friction: 0.1 });
+    let mut e = taken_up(&Packing { law, ..p }, setting(0.3, 2e-8));
     e.set_rate(&[0.0, 0.0, 0.0, 0.0, 1.0, 0.5]).unwrap();
     steps(&mut e, 100);
     let loaded = packing(&e);
-    assert!(loaded.contacts.iter().any(|c| c.tangential_force.norm() > 0.0));
+    let none = Vec3::zeros();
+    assert!(loaded.contacts.iter().any(|c| c.tangential_force != none && c.rolling_force != none));
     assert!(loaded.spins.iter().any(|w| w.norm() > 0.0));
     e.set_settings(setting(0.0, 2e-8)).unwrap();
     steps(&mut e, 100);
     let p = packing(&e);
-    assert!(!p.contacts.is_empty() && p.contacts.iter().all(|c| c.tangential_force == Vec3::zeros()));
-    assert!(p.spins.iter().all(|w| *w == Vec3::zeros()));
+    assert!(!p.contacts.is_empty());
+    assert!(p.contacts.iter().all(|c| c.tangential_force == none && c.rolling_force == none));
+    assert!(p.spins.iter().all(|w| *w == none));
 }
 
 /// Expected: a packing that had friction, taken up without, shows the stress of its normal forces at once.
 #[test]
 fn a_frictional_packing_taken_up_without_friction_drops_its_tangential_forces() {
     let p = Sample::Pressed.packing();
-    let mut e = Engine::from_packing(&p, setting(0.0, 2e-8)).unwrap();
-    e.initialise().unwrap();
+    let e = taken_up(&p, setting(0.0, 2e-8));
     let mut bare = p.clone();
     bare.contacts.iter_mut().for_each(|c| c.tangential_force = Vec3::zeros());
     let expected = grainlab_core::stress::stress(&bare).tensor.matrix();
@@ -86,8 +88,7 @@ fn infinite_friction_is_the_limit_of_large_friction_and_none_of_small() {
         let mut q = p.clone();
         // Small friction would cut off the history of this packing at once.
         q.contacts.iter_mut().for_each(|c| c.tangential_force = Vec3::zeros());
-        let mut e = Engine::from_packing(&q, setting(friction, 2e-8)).unwrap();
-        e.initialise().unwrap();
+        let mut e = taken_up(&q, setting(friction, 2e-8));
         e.set_rate(&[-1.0, 0.5, 0.2, 0.0, 1.0, 0.5]).unwrap();
         steps(&mut e, 300);
         e.observables().unwrap().stress.tensor.matrix()

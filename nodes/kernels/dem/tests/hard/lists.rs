@@ -1,12 +1,13 @@
 //! Neighbour lists never miss a contact: after every step against brute force over all images.
 
-use crate::support::*;
 use grainlab_core::{Cell, Mat3, Packing, Vec3};
 use grainlab_dem::{Engine, EngineSettings};
+use grainlab_testkit::Random;
+use grainlab_testkit::engine::*;
 
 /// Grains at random that pass through each other, so that lists alone decide: `count` of radii from `smallest` to 1.
 fn ghosts(cell: Cell, count: usize, smallest: f64, seed: u64, s: EngineSettings) -> Engine {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let radii: Vec<f64> = (0..count).map(|_| RADIUS * random.between(smallest, 1.0)).collect();
     // Unwrapped positions, up to three cells away.
     let x: Vec<Vec3> = (0..count).map(|_| cell.matrix() * random.vector(3.0)).collect();
@@ -35,7 +36,7 @@ fn shapes() -> Vec<(&'static str, Mat3)> {
 /// Expected: every touching pair and image, in any cell, with any radii and wherever grains have travelled.
 #[test]
 fn every_contact_of_a_random_state_in_a_random_cell_is_found() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     let mut contacts = 0;
     for seed in 0..300 {
         let shape = Mat3::from_diagonal(&Vec3::from_fn(|_, _| random.between(1.0, 9.0)))
@@ -57,7 +58,7 @@ fn every_contact_of_a_random_state_in_a_random_cell_is_found() {
 fn no_contact_is_missed_under_strain() {
     for (name, shape) in shapes() {
         for (seed, rate) in [(1, 1.0), (2, 10.0)] {
-            let mut random = Random(seed);
+            let mut random = Random::new(seed);
             let mut e = ghosts(Cell::new(shape).unwrap(), 28, 0.6, seed, setting(0.0, 1e-3));
             let mut last = 0;
             let mut changes = 0;
@@ -86,7 +87,7 @@ fn no_contact_is_missed_under_strain() {
 #[test]
 fn no_contact_is_missed_in_a_fast_gas() {
     for (name, shape) in shapes() {
-        let mut random = Random(9);
+        let mut random = Random::new(9);
         let mut e = ghosts(Cell::new(shape).unwrap(), 14, 0.6, 4, setting(0.0, 1e-3));
         // Up to 0.05 R a step: half of what is refused as unstable, half of the skin.
         let velocities: Vec<Vec3> = (0..14).map(|_| random.vector(0.03 * RADIUS / 1e-3)).collect();
@@ -108,7 +109,7 @@ fn no_contact_is_missed_in_a_fast_gas() {
 #[test]
 fn no_contact_is_missed_by_strain_steps_beyond_the_skin() {
     for (name, shape) in shapes() {
-        let mut random = Random(6);
+        let mut random = Random::new(6);
         let mut e = ghosts(Cell::new(shape).unwrap(), 14, 0.3, 8, setting(0.0, 1e-3));
         for _ in 0..40 {
             let r: [f64; 6] = std::array::from_fn(|_| random.between(-100.0, 100.0));

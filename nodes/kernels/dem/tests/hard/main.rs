@@ -11,6 +11,5 @@ mod lists;
 mod refusals;
 mod sheared;
 mod sizes;
-mod support;
 mod targets;
 mod time_step;

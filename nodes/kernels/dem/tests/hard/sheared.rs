@@ -2,9 +2,10 @@
 //!
 //! H and H U with an integer U of determinant 1 span the same lattice, so that every answer must be the same.
 
-use crate::support::*;
 use grainlab_core::{Cell, Mat3, Packing, Vec3};
 use grainlab_dem::{DemError, Engine};
+use grainlab_testkit::Random;
+use grainlab_testkit::engine::*;
 
 /// The packing with its cell vectors recombined by `u`, without history.
 fn recombined(p: &Packing, u: &Mat3) -> Engine {
@@ -58,7 +59,7 @@ fn a_cell_that_leans_by_more_than_a_hundred_vectors_is_refused() {
 #[test]
 fn shearing_through_one_half_and_on_keeps_finding_every_contact() {
     let edge = 10.0 * RADIUS;
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     let x: Vec<Vec3> = (0..40).map(|_| random.vector(0.5 * edge)).collect();
     // Grains that pass through each other: only distances matter here.
     let mut e = engine(Cell::cube(edge).unwrap(), HEAVY, &[RADIUS; 40], &x, setting(0.0, 1e-3));

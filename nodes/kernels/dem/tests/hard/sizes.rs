@@ -1,10 +1,11 @@
 //! Grains of size ratio 1 to 5.
 
-use crate::support::*;
 use grainlab_core::contact::TangentialLaw;
 use grainlab_core::effective_radius;
 use grainlab_core::{Cell, Vec3};
 use grainlab_dem::Engine;
+use grainlab_testkit::Random;
+use grainlab_testkit::engine::*;
 
 const SMALL: f64 = 0.2 * RADIUS;
 
@@ -27,7 +28,7 @@ fn two_unequal_grains_have_the_stress_of_their_contact() {
 
 /// A gas of large and small grains without overlap.
 fn mixture(seed: u64, friction: f64, time_step: f64) -> Engine {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let edge = 8.0 * RADIUS;
     let cell = Cell::cube(edge).unwrap();
     let (mut radii, mut x) = (Vec::<f64>::new(), Vec::<Vec3>::new());

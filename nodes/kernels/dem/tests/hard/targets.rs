@@ -1,8 +1,8 @@
 //! Stress targets that reverse, vanish, or cannot be reached, through the servo as a laboratory runs it.
 
-use crate::support::*;
 use grainlab_core::{ComponentControl, ServoLaw};
 use grainlab_dem::{DemError, Engine, TimeStep};
+use grainlab_testkit::engine::*;
 
 const PERIOD: u32 = 10;
 const LIMIT: f64 = 30.0;
@@ -13,9 +13,7 @@ fn start() -> Engine {
     let mut s = setting(0.3, 0.0);
     s.time_step = TimeStep::FractionOfStable(0.8);
     (s.damping, s.drag, s.spin_drag) = (0.3, 2e4, 2e4);
-    let mut e = Engine::from_packing(&Sample::Pressed.packing(), s).unwrap();
-    e.initialise().unwrap();
-    e
+    taken_up(&Sample::Pressed.packing(), s)
 }
 
 /// Runs `periods` control periods; returns the last answer.

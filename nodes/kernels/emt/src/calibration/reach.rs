@@ -87,7 +87,7 @@ impl Reach {
             beyond("p/E*", pressure, self.pressure, f64::ln, (LN_WIDTH, PRESSURE_END)),
             beyond("k_t/k_n", stiffness_ratio, self.stiffness_ratio, |v| v, (WIDTH, RATIO_END)),
             beyond("the spread of the grain sizes", size_spread, self.size_spread, |v| v, (WIDTH, SIZE_END)),
-            beyond("q/p", state.stress_ratio, self.stress_ratio, |v| v, (WIDTH, ROUNDING)),
+            beyond("the axial stress ratio", state.stress_ratio, self.stress_ratio, |v| v, (WIDTH, ROUNDING)),
         ]
         .into_iter()
         .flatten()
@@ -167,7 +167,7 @@ mod tests {
 
     #[test]
     fn variances_grow_with_the_distance_and_half_a_range_away_there_is_no_estimate() {
-        let at = |value| beyond("q/p", value, [-0.2, 0.3], |v| v, (0.1, ROUNDING));
+        let at = |value| beyond("the axial stress ratio", value, [-0.2, 0.3], |v| v, (0.1, ROUNDING));
         assert_eq!(at(0.3), None);
         let [end, beyond] = [-0.2004, -0.2006].map(|v| at(v).unwrap());
         assert!(!end.is_extrapolation() && beyond.is_extrapolation());

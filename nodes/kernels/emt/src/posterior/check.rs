@@ -60,7 +60,7 @@ impl Check {
     pub fn apply(&self, estimate: &mut Estimate) {
         if self.is_unlikely() && !estimate.warnings.iter().any(Warning::is_contradiction) {
             estimate.warnings.push(Warning::Improbable { probability: self.probability() });
-            estimate.status = Status::of_estimate(&estimate.structure, &estimate.warnings);
+            estimate.status = Status::of_estimate(&estimate.structure, &mut estimate.warnings);
         }
     }
 

@@ -7,8 +7,10 @@ use super::forward::Forward;
 use super::gain::ContactKind;
 use super::prior::SeriesPrior;
 use super::sample::SpeedSeries;
-use crate::calibration::RelaxationCalibration;
+use crate::calibration::{NetworkState, Outside, RelaxationCalibration};
+use crate::checks::FALSE_ALARM;
 use crate::error::EmtError;
+use crate::warning::Warning;
 use serde::Serialize;
 
 /// No z above is stated: packings of the calibration have none.
@@ -23,14 +25,8 @@ pub(super) const SEED: u64 = 31;
 /// k_t/k_n closer than this to an end of its range is at it.
 const AT_END: f64 = 0.05;
 
-/// Drift of ln k_t/k_n per decade that is tried.
-const DRIFT: f64 = 0.1;
-
 /// Standard deviations of a difference that contradicts.
-const FAR: f64 = 3.0;
-
-/// Slope of z per decade without the prior's: mean and standard deviation.
-const NO_SLOPE: [f64; 2] = [0.0, 1.0];
+pub(super) const FAR: f64 = 3.0;
 
 /// Probability of a contact law or preparation below which nothing is said of it.
 const UNLIKELY: f64 = 0.05;
@@ -90,7 +86,7 @@ impl Interval {
         self.mean.abs() > FAR * self.prior_stddev
     }
 
-    fn cut(self) -> Self {
+    pub(super) fn cut(self) -> Self {
         let cut = |v: f64| v.min(HIGHEST_Z);
         Self { mean: cut(self.mean), low: cut(self.low), high: cut(self.high), ..self }
     }
@@ -105,12 +101,17 @@ pub struct PressureEstimate {
     pub z: Interval,
     /// Probability of a z beyond those that are stated.
     pub z_beyond: f64,
+    /// Probability of a z below the lowest of the calibration's packings.
+    pub z_below: f64,
     /// ε; `None` without speeds in two directions.
     pub eps: Option<Interval>,
     /// ε weighted by contact stiffness.
     pub eps_stiffness: Option<Interval>,
     /// Probability of worse speeds at this pressure, predicted from the others; `None` of the only pressure.
     pub p: Option<f64>,
+    /// The quantity of the state that is outside the packings of the calibration: p/E* first, then the sizes.
+    #[serde(skip)]
+    pub outside: Option<Warning>,
 }
 
 /// One row of the series.
@@ -164,6 +165,8 @@ pub struct SeriesEstimate {
     pub preparations: Vec<(String, f64)>,
     /// Probability of data that are less probable than these, under all that was assumed.
     pub p: f64,
+    /// Probability of speeds that differ more by their stated errors, of waves that are one modulus; `None` without such waves.
+    pub p_twins: Option<f64>,
     /// ln of the evidence.
     pub ln_evidence: f64,
     /// Effective number of draws.
@@ -175,30 +178,24 @@ impl SeriesEstimate {
     pub const CONTRADICTORY: f64 = 0.01;
 
     /// True if the data contradict each other, or what was assumed: as a whole, at one of the pressures (of a
-    /// single one, in one row), or by their level.
+    /// single one, in one row), by their level, or in waves that are one modulus.
     pub fn is_contradictory(&self) -> bool {
         let of_pressures: Vec<f64> = self.pressures.iter().filter_map(|p| p.p).collect();
         let of_rows = || self.rows.iter().filter_map(|r| r.p).collect();
         let parts = if of_pressures.is_empty() { of_rows() } else { of_pressures };
         let of_parts = parts.iter().copied().fold(1.0, f64::min) * parts.len() as f64;
-        self.p.min(of_parts) < Self::CONTRADICTORY || self.has_far_level()
+        self.p.min(of_parts) < Self::CONTRADICTORY || self.has_far_level() || self.has_unequal_twins()
+    }
+
+    /// True if waves that are one modulus differ by more than chance and their stated errors allow.
+    pub fn has_unequal_twins(&self) -> bool {
+        self.p_twins.is_some_and(|p| p < FALSE_ALARM)
     }
 
     /// True if the moduli are further from those of the law with the given material and density than is assumed of any sample.
     pub fn has_far_level(&self) -> bool {
         self.level.is_far()
     }
-}
-
-/// z under other assumptions, at each pressure.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Sensitivity {
-    /// With k_t/k_n falling and rising by 10 % per decade of pressure.
-    pub drifted: [Vec<f64>; 2],
-    /// Without the prior's slope of z.
-    pub without_slope: Vec<f64>,
-    /// z of the bulk modulus less z of the shear modulus, the contact shared: mean and standard deviation.
-    pub bulk_less_shear: Vec<[f64; 2]>,
 }
 
 /// Infers the structure of a sample at each pressure, and its contacts. Takes about a second.
@@ -239,9 +236,11 @@ pub fn infer_series(
             pressure: forward.pressures[k],
             z: marginal(&|d| d.z[k]).cut(),
             z_beyond: probability(&|d| d.z[k] > HIGHEST_Z),
+            z_below: probability(&|d| d.z[k] < network.reach.z[0]),
             eps: determined.then(|| marginal(&|d| d.eps[k])),
             eps_stiffness: determined.then(|| marginal(&|d| d.eps_stiffness[k])),
             p: groups.of_pressures[k],
+            outside: outside(series, network, forward.pressures[k]),
         })
         .collect();
     let laws = prior.contact.iter().map(|c| c.law).map(|law| {
@@ -296,9 +295,22 @@ pub fn infer_series(
         laws: laws.collect(),
         preparations: preparations.collect(),
         p: mixture.contradiction(SEED),
+        p_twins: series.p_twins(),
         ln_evidence: mixture.ln_evidence(),
         effective_draws,
     })
+}
+
+/// The first quantity of the state at this pressure that is outside the packings of the calibration. k_t/k_n is inferred, from a
+/// range of its own.
+fn outside(series: &SpeedSeries, network: &RelaxationCalibration, pressure: f64) -> Option<Warning> {
+    let sizes = series.size_variance[0].sqrt();
+    let state = NetworkState::of(pressure, &series.material, sizes, series.stress_ratio[0]);
+    let all = network.reach.outside(pressure / series.material.effective_young(), &state);
+    let of_state = all.into_iter().filter(|o| o.is_extrapolation() && o.quantity != "k_t/k_n");
+    of_state
+        .map(|Outside { quantity, value, range, .. }| Warning::StateOutsideFit { quantity, value, range })
+        .next()
 }
 
 /// Predictions without each pressure, and without each row.
@@ -337,65 +349,5 @@ impl Groups {
             group.iter().zip(rows).for_each(|(j, row)| found.rows[*j] = Some(row));
         }
         found
-    }
-}
-
-/// Nodes and weights of a quadrature over a normal distribution (Gauss and Hermite, of order 5).
-const QUADRATURE: [[f64; 2]; 5] = [
-    [-2.856_970_013_872_806, 0.011_257_411_327_720_69],
-    [-1.355_626_179_974_266, 0.222_075_922_005_612_7],
-    [0.0, 0.533_333_333_333_333_3],
-    [1.355_626_179_974_266, 0.222_075_922_005_612_7],
-    [2.856_970_013_872_806, 0.011_257_411_327_720_69],
-];
-
-impl Mixture<'_> {
-    /// Means of z by the normal approximations.
-    fn z(&self) -> Vec<f64> {
-        let (n, first) = (self.forward.count(), self.forward.ratio() - self.forward.count());
-        let mut mean = vec![0.0; n];
-        for (solution, weight) in self.solutions.iter().zip(&self.weights) {
-            let variances = solution.variances();
-            for (k, mean) in mean.iter_mut().enumerate() {
-                let at = |x: f64| {
-                    Forward::z_of(solution.component.unknowns[first + k] + x * variances[first + k].sqrt())[0]
-                };
-                *mean += weight * QUADRATURE.iter().map(|[x, w]| w * at(*x)).sum::<f64>();
-            }
-        }
-        mean.into_iter().map(|z| z.min(HIGHEST_Z)).collect()
-    }
-}
-
-impl Sensitivity {
-    /// True if the bulk modulus and the shear modulus have no z in common.
-    pub fn is_contradictory(&self) -> bool {
-        self.bulk_less_shear.iter().any(|[difference, stddev]| difference.abs() > FAR * stddev)
-    }
-
-    /// z under other assumptions: four more inversions by their normal approximations.
-    ///
-    /// # Errors
-    /// As [`infer_series`].
-    pub fn of(
-        series: &SpeedSeries,
-        network: &RelaxationCalibration,
-        prior: &SeriesPrior,
-    ) -> Result<Self, EmtError> {
-        series.check()?;
-        let z =
-            |prior: SeriesPrior| Mixture::of(Forward::new(series, network, &prior), series.ln_crossover).z();
-        let split = SeriesPrior { is_split: true, ..prior.clone() };
-        let apart = Mixture::of(Forward::new(series, network, &split), series.ln_crossover);
-        let (draws, _) = apart.draws(SEED);
-        let difference = |k: usize| {
-            let all = Interval::of(draws.iter().map(|d| (d.bulk_less_shear[k], d.weight)));
-            [all.mean, all.stddev]
-        };
-        Ok(Self {
-            drifted: [-DRIFT, DRIFT].map(|drift| z(SeriesPrior { drift, ..prior.clone() })),
-            without_slope: z(SeriesPrior { other_slope: Some(NO_SLOPE), ..prior.clone() }),
-            bulk_less_shear: (0..apart.forward.count()).map(difference).collect(),
-        })
     }
 }

@@ -114,8 +114,8 @@ impl<'a> Forward<'a> {
             0.5 * series.pressure_stddev,
         ];
         let mut errors = DMatrix::from_diagonal(&DVector::from_fn(rows.len(), |j, _| rows[j].stddev.powi(2)));
-        let mut shared = Self::common(&rows, |row| row.stddev);
-        let common = Self::common(&rows, |row| row.common_stddev);
+        let mut shared = SeriesRow::common(&rows, |row| row.stddev);
+        let common = SeriesRow::common(&rows, |row| row.common_stddev);
         if let Some(stated) = &series.covariance {
             errors.view_mut((0, 0), stated.shape()).copy_from(stated);
             shared.copy_from(&errors);
@@ -140,19 +140,6 @@ impl<'a> Forward<'a> {
             given,
             ln_pressure,
         }
-    }
-
-    /// Covariance of errors that are common to the rows of one mode and direction: paths and transducers. Other modes of the direction
-    /// share the path, which is half of it.
-    fn common(rows: &[SeriesRow], stddev: impl Fn(&SeriesRow) -> f64) -> DMatrix<f64> {
-        let share = |a: &SeriesRow, b: &SeriesRow| match () {
-            () if a.angle != b.angle => 0.0,
-            () if a.mode != b.mode => 0.5,
-            () => 1.0,
-        };
-        DMatrix::from_fn(rows.len(), rows.len(), |j, k| {
-            share(&rows[j], &rows[k]) * stddev(&rows[j]) * stddev(&rows[k])
-        })
     }
 
     /// Number of pressures.

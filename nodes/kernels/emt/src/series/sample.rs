@@ -1,8 +1,9 @@
 //! The wave speeds of one sample over pressure.
 
 use crate::error::EmtError;
+use crate::normal::chi_square_above;
 use grainlab_core::Material;
-use nalgebra::DMatrix;
+use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// Mode of a wave: polarized along its direction, in the plane of direction and axis, or across it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,6 +55,21 @@ pub struct SeriesRow {
     pub stddev: f64,
     /// Standard deviation of the speed over it, by errors that all rows of this mode and direction share.
     pub common_stddev: f64,
+}
+
+impl SeriesRow {
+    /// Returns the covariance of errors that are common to the rows of one mode and direction: paths and transducers. Other modes of
+    /// the direction share the path, which has half of the covariance.
+    pub(super) fn common(rows: &[Self], stddev: impl Fn(&Self) -> f64) -> DMatrix<f64> {
+        let share = |a: &Self, b: &Self| match () {
+            () if a.angle != b.angle => 0.0,
+            () if a.mode != b.mode => 0.5,
+            () => 1.0,
+        };
+        DMatrix::from_fn(rows.len(), rows.len(), |j, k| {
+            share(&rows[j], &rows[k]) * stddev(&rows[j]) * stddev(&rows[k])
+        })
+    }
 }
 
 /// The speeds of one sample under isotropic stress, and what is known of its grains.
@@ -165,6 +181,39 @@ impl SpeedSeries {
         let own = differences.iter().map(|(_, v)| v).sum::<f64>() / (n * n);
         let is_each = differences.iter().all(|(d, v)| d * mean > 0.0 && d * d > v + common);
         (differences.len() > 1 && is_each && mean.abs() > 3.0 * (own + common).sqrt()).then_some(mean)
+    }
+
+    /// Probability of speeds that differ more by their stated errors, of waves of different modes or directions that are one modulus,
+    /// G13, in one state; `None` without such waves.
+    pub(super) fn p_twins(&self) -> Option<f64> {
+        let pressures = self.pressures();
+        let is_of = |row: &&SeriesRow| row.angle.is_some_and(|angle| row.mode.is_axial_shear(angle));
+        let rows: Vec<SeriesRow> =
+            self.rows.iter().filter(|row| row.speed.is_some()).filter(is_of).copied().collect();
+        let is_same = |a: &SeriesRow, b: &SeriesRow| {
+            a.mode == b.mode && a.angle.zip(b.angle).is_some_and(|(a, b)| same(a, b))
+        };
+        let state = |row: &SeriesRow| Self::place(&pressures, row);
+        let own = DVector::from_iterator(rows.len(), rows.iter().map(|row| row.stddev.powi(2)));
+        let common = SeriesRow::common(&rows, |row| row.common_stddev);
+        let weight = Cholesky::new(DMatrix::from_diagonal(&own) + common)?.inverse();
+        let data = DVector::from_iterator(
+            rows.len(),
+            rows.iter().map(|row| row.speed.map_or(f64::NAN, f64::ln) + 0.5 * row.density.ln()),
+        );
+        // χ² about one speed for all rows that are alike, and the number of these speeds.
+        let about = |is_alike: &dyn Fn(&SeriesRow, &SeriesRow) -> bool| {
+            let first = |n: usize| (0..=n).find(|m| is_alike(&rows[*m], &rows[n])).unwrap_or(n);
+            let means: Vec<usize> = (0..rows.len()).filter(|n| first(*n) == *n).collect();
+            let design =
+                DMatrix::from_fn(rows.len(), means.len(), |n, m| f64::from(u8::from(first(n) == means[m])));
+            let information = Cholesky::new(design.transpose() * &weight * &design)?;
+            let pull = design.transpose() * &weight * &data;
+            Some((data.dot(&(&weight * &data)) - pull.dot(&information.solve(&pull)), means.len()))
+        };
+        let (of_states, states) = about(&|a, b| state(a) == state(b))?;
+        let (of_waves, waves) = about(&|a, b| state(a) == state(b) && is_same(a, b))?;
+        (waves > states).then(|| chi_square_above(of_states - of_waves, waves - states))
     }
 
     /// The first fault, if any.

@@ -23,6 +23,8 @@ pub(crate) struct SingleEstimate {
     pub(crate) has_eps: bool,
     /// Probability of a z beyond those that are stated.
     pub(crate) z_beyond: f64,
+    /// Probability of a z below the lowest of the calibration's packings.
+    pub(crate) z_below: f64,
     /// ln of the moduli over those of the contact law.
     pub(crate) level: Interval,
     /// k_t/k_n of the contacts.
@@ -61,12 +63,16 @@ impl SingleEstimate {
         };
         let marginals = std::array::from_fn(|i| both(&|d| values(d)[i]));
         let mean = SVector::from(marginals.each_ref().map(|m| m.mean));
+        let probability = |of: &dyn Fn(f64) -> bool| {
+            draws.iter().filter(|d| of(first(&d.z))).fold(0.0, |sum, d| sum + d.weight)
+        };
         let off = draws.iter().map(|d| (values(d) - mean, d.weight));
         Ok(Self {
             marginals,
             covariance: off.map(|(v, w)| v * v.transpose() * w).sum(),
             has_eps: series.has_directions(),
-            z_beyond: draws.iter().filter(|d| first(&d.z) > HIGHEST_Z).fold(0.0, |sum, d| sum + d.weight),
+            z_beyond: probability(&|z| z > HIGHEST_Z),
+            z_below: probability(&|z| z < network.reach.z[0]),
             level: both(&|d| d.level),
             stiffness_ratio: both(&|d| d.stiffness_ratio),
             p: mixture.contradiction(SEED),

@@ -1,9 +1,10 @@
 //! Packings that are not exactly isotropic about any axis.
 
-use super::laboratory::{DENSITY, Numbers, every_mode, thirteen};
+use super::laboratory::{DENSITY, every_mode, thirteen};
 use grainlab_core::{Stiffness, Vec3, WaveSpeed};
 use grainlab_emt::christoffel::{self, SpeedFit};
 use grainlab_emt::{Conditions, Measured, Modulus};
+use grainlab_testkit::Random;
 use nalgebra::Matrix6;
 
 /// Stiffness in MPa of `anisotropic_2000` and `isotropic_2000` of the golden packings, measured by `grainlab
@@ -38,7 +39,7 @@ fn fit(speeds: &[WaveSpeed]) -> SpeedFit {
 
 /// Speeds with errors of 0.05 %.
 fn sharp(packing: &Stiffness, directions: &[Vec3]) -> Vec<WaveSpeed> {
-    every_mode(packing, directions, 0.0005, &mut Numbers::new(1))
+    every_mode(packing, directions, 0.0005, &mut Random::new(1))
 }
 
 fn deviations(fitted: &SpeedFit, packing: &Stiffness) -> Vec<(Modulus, f64)> {
@@ -107,8 +108,8 @@ fn what_a_packing_is_inferred_to_be_holds_although_it_departs() {
 #[test]
 fn speeds_that_scatter_more_than_those_of_a_packing_are_a_conflict() {
     let mut speeds = sharp(&packing(&ANISOTROPIC), &thirteen());
-    let mut numbers = Numbers::new(2);
-    speeds.iter_mut().for_each(|s| s.speed *= 1.0 + 0.04 * numbers.normal());
+    let mut random = Random::new(2);
+    speeds.iter_mut().for_each(|s| s.speed *= 1.0 + 0.04 * random.normal());
     let fitted = fit(&speeds);
     assert!(fitted.anisotropy_scatter.is_none() && fitted.conflict.is_some(), "{fitted:?}");
 }
@@ -116,7 +117,7 @@ fn speeds_that_scatter_more_than_those_of_a_packing_are_a_conflict() {
 #[test]
 fn one_speed_that_is_off_where_all_others_agree_is_no_departure() {
     let medium = packing(&ANISOTROPIC).transverse_isotropy().stiffness();
-    let mut speeds = every_mode(&medium, &thirteen(), 0.0005, &mut Numbers::new(3));
+    let mut speeds = every_mode(&medium, &thirteen(), 0.0005, &mut Random::new(3));
     assert_eq!((fit(&speeds).conflict, fit(&speeds).anisotropy_scatter), (None, None));
     // 1 % is 20 standard deviations, and less than the scatter of a packing.
     speeds[9].speed *= 1.01;
@@ -128,10 +129,10 @@ fn one_speed_that_is_off_where_all_others_agree_is_no_departure() {
 /// medium.
 #[test]
 fn two_s_waves_of_one_direction_may_be_turned_from_those_of_the_medium_and_one_alone_may_not() {
-    let mut numbers = Numbers::new(4);
+    let mut random = Random::new(4);
     let medium = packing(&ANISOTROPIC).transverse_isotropy();
     let stiffness = medium.stiffness();
-    let mut speeds = every_mode(&stiffness, &thirteen(), 0.0005, &mut numbers);
+    let mut speeds = every_mode(&stiffness, &thirteen(), 0.0005, &mut random);
     let exact = fit(&speeds);
     let turned = |speeds: &mut Vec<WaveSpeed>, at: [usize; 2], angle: f64| {
         let [a, b] = at.map(|i| speeds[i].polarization);

@@ -29,35 +29,6 @@ fn knows(waves: &[Wave], moduli: &[Modulus]) {
 }
 
 #[test]
-fn speeds_along_the_axes_leave_the_bulk_modulus_open() {
-    use Modulus::{C11, C33, G12, G13};
-    knows(
-        &[Wave::P(0.0), Wave::P(90.0), Wave::Sh(90.0), Wave::Sv(0.0), Wave::Sv(90.0)],
-        &[G12, G13, C11, C33],
-    );
-    knows(&[Wave::P(90.0), Wave::Sh(90.0)], &[G12, C11]);
-    knows(&[Wave::Sv(0.0)], &[G13]);
-    knows(&[Wave::P(0.0)], &[C33]);
-}
-
-#[test]
-fn two_shear_speeds_give_both_shear_moduli() {
-    use Modulus::{G12, G13};
-    knows(&[Wave::Sv(90.0), Wave::Sh(90.0)], &[G12, G13]);
-    knows(&[Wave::Sh(30.0), Wave::Sh(75.0)], &[G12, G13]);
-    knows(&[Wave::Sh(45.0)], &[]);
-}
-
-#[test]
-fn a_pair_of_modes_between_the_axes_replaces_a_speed_along_one() {
-    let all = Modulus::ALL;
-    let pair = [Wave::P(45.0), Wave::Sv(45.0)];
-    knows(&[&pair[..], &[Wave::P(0.0), Wave::Sv(0.0), Wave::Sh(90.0)]].concat(), &all);
-    knows(&[&pair[..], &[Wave::P(90.0), Wave::Sv(0.0), Wave::Sh(90.0)]].concat(), &all);
-    knows(&[&pair[..], &[Wave::P(0.0), Wave::P(90.0), Wave::Sh(90.0)]].concat(), &all);
-}
-
-#[test]
 fn one_quasi_compressional_speed_completes_the_speeds_along_the_axes() {
     let waves = [Wave::P(0.0), Wave::P(90.0), Wave::Sh(90.0), Wave::Sv(0.0), Wave::P(45.0)];
     knows(&waves, &Modulus::ALL);

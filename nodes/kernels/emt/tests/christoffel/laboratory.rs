@@ -3,7 +3,8 @@
 use grainlab_core::{Stiffness, TransverseIsotropy, Vec3, WaveSpeed};
 use grainlab_emt::christoffel::{self, ChristoffelError, SpeedFit};
 use grainlab_emt::{Conditions, Measured, Modulus};
-use nalgebra::{Rotation3, Unit};
+use grainlab_testkit::Random;
+use nalgebra::Rotation3;
 
 /// Density of the mass that moves, kg/m³.
 pub(crate) const DENSITY: f64 = 1573.0;
@@ -106,65 +107,30 @@ pub(crate) fn every_mode(
     stiffness: &Stiffness,
     directions: &[Vec3],
     relative: f64,
-    numbers: &mut Numbers,
+    random: &mut Random,
 ) -> Vec<WaveSpeed> {
     let mut speeds = Vec::new();
     for direction in directions {
         let waves = stiffness.plane_waves(direction);
         for (modulus, polarization) in waves.moduli.into_iter().zip(waves.polarizations) {
             let exact = (modulus / DENSITY).sqrt();
-            let (speed, stddev) = (exact * (1.0 + relative * numbers.normal()), Some(relative * exact));
+            let (speed, stddev) = (exact * (1.0 + relative * random.normal()), Some(relative * exact));
             speeds.push(WaveSpeed { direction: *direction, polarization, speed, stddev });
         }
     }
     speeds
 }
 
-/// Pseudorandom numbers, the same in every run.
-pub(crate) struct Numbers(u64);
-
-impl Numbers {
-    pub(crate) fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    /// Between 0 and 1.
-    pub(crate) fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.uniform()
-    }
-
-    /// Normal number of mean 0 and variance 1.
-    pub(crate) fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
-        radius * (std::f64::consts::TAU * self.uniform()).cos()
-    }
-
-    pub(crate) fn frame(&mut self) -> Rotation3<f64> {
-        let axis = Unit::new_normalize(Vec3::from_fn(|_, _| self.normal()));
-        Rotation3::from_axis_angle(&axis, self.between(0.0, 3.0))
-    }
-
-    /// A stable medium whose P modulus is above its S moduli along and across the axis, and whose C13 + C44 is
-    /// positive.
-    /// `anisotropy` in (0, 1].
-    pub(crate) fn medium(&mut self, anisotropy: f64) -> TransverseIsotropy {
-        loop {
-            let mut about = |value: f64| value * (anisotropy * self.between(-1.0, 1.0)).exp();
-            let (c33, c11, g13, g12) = (about(300e6), about(300e6), about(90e6), about(90e6));
-            let c13 = about(190e6) - g13;
-            let c12 = c11 - 2.0 * g12;
-            let stable = c11 > g12 && c33 * (c11 - g12) > c13 * c13;
-            if stable && c13 + g13 > 0.2 * g13 && c11.min(c33) > 1.1 * g12.max(g13) {
-                return TransverseIsotropy { c11, c12, c13, c33, g13, g12, residual: 0.0 };
-            }
+/// A stable medium whose P modulus is above its S moduli along and across the axis, and whose C13 + C44 is positive; `anisotropy`
+/// in (0, 1].
+pub(crate) fn medium(random: &mut Random, anisotropy: f64) -> TransverseIsotropy {
+    loop {
+        let mut about = |value: f64| value * (anisotropy * random.between(-1.0, 1.0)).exp();
+        let (c33, c11, g13, g12) = (about(300e6), about(300e6), about(90e6), about(90e6));
+        let c13 = about(190e6) - g13;
+        let stable = c11 > g12 && c33 * (c11 - g12) > c13 * c13;
+        if stable && c13 + g13 > 0.2 * g13 && c11.min(c33) > 1.1 * g12.max(g13) {
+            return TransverseIsotropy::of_constants(c11, c33, c13, g13, g12);
         }
     }
 }

@@ -1,9 +1,10 @@
 //! Speeds with errors.
 
-use super::laboratory::{DENSITY, Numbers, PACKING, Sample, Wave};
+use super::laboratory::{DENSITY, PACKING, Sample, Wave};
 use grainlab_core::WaveSpeed;
 use grainlab_emt::christoffel::{self, SpeedFit};
 use grainlab_emt::{Conditions, MODULI, Measured, ModuliCovariance, Modulus};
+use grainlab_testkit::Random;
 use nalgebra::{Rotation3, SMatrix, SVector};
 
 /// The smallest set with redundancy for every modulus: speeds along the axes, and a pair between them.
@@ -23,10 +24,10 @@ fn exact(waves: &[Wave]) -> Vec<WaveSpeed> {
 }
 
 /// Speeds with relative errors of these standard deviations, stated as uncertainties.
-fn with_errors(speeds: &[WaveSpeed], relative: &[f64], numbers: &mut Numbers) -> Vec<WaveSpeed> {
+fn with_errors(speeds: &[WaveSpeed], relative: &[f64], random: &mut Random) -> Vec<WaveSpeed> {
     let measure = |(speed, relative): (&WaveSpeed, &f64)| {
         let stddev = relative * speed.speed;
-        WaveSpeed { speed: speed.speed + stddev * numbers.normal(), stddev: Some(stddev), ..*speed }
+        WaveSpeed { speed: speed.speed + stddev * random.normal(), stddev: Some(stddev), ..*speed }
     };
     speeds.iter().zip(relative.iter().cycle()).map(measure).collect()
 }
@@ -48,10 +49,10 @@ fn five<const C: usize>(m: &SMatrix<f64, MODULI, C>) -> SMatrix<f64, 5, C> {
 /// inverse covariance, and the fraction of conflicts.
 fn scatter(waves: &[Wave], relative: &[f64]) -> [f64; 3] {
     const DRAWS: usize = 3000;
-    let (mut numbers, speeds) = (Numbers::new(7), exact(waves));
+    let (mut random, speeds) = (Random::new(7), exact(waves));
     let mut sums = [0.0; 3];
     for _ in 0..DRAWS {
-        let fitted = sample().fit(&with_errors(&speeds, relative, &mut numbers)).unwrap();
+        let fitted = sample().fit(&with_errors(&speeds, relative, &mut random)).unwrap();
         let stated = five(&five(&covariance(&fitted)).transpose());
         let error = five(&errors(&fitted));
         sums[0] += fitted.chi_square.unwrap();
@@ -87,7 +88,7 @@ fn redundant_speeds_have_the_chi_square_of_their_degrees_of_freedom() {
 #[test]
 fn both_modes_between_the_axes_give_the_bulk_modulus_half_again_as_well_as_one() {
     let relative = |waves: &[Wave]| {
-        let speeds = with_errors(&exact(waves), &[0.003], &mut Numbers::new(1));
+        let speeds = with_errors(&exact(waves), &[0.003], &mut Random::new(1));
         let fitted = sample().fit(&speeds).unwrap();
         let i = Modulus::Theta as usize;
         covariance(&fitted)[(i, i)].sqrt() / sample().truth(Modulus::Theta)
@@ -100,7 +101,7 @@ fn both_modes_between_the_axes_give_the_bulk_modulus_half_again_as_well_as_one()
 
 #[test]
 fn an_error_of_the_density_moves_all_moduli_together() {
-    let speeds = with_errors(&exact(&SIX), &[0.001], &mut Numbers::new(2));
+    let speeds = with_errors(&exact(&SIX), &[0.001], &mut Random::new(2));
     let at = |density| {
         christoffel::moduli_from_speeds(&speeds, density, Some(sample().axis()), Conditions::at(50e3))
             .unwrap()
@@ -139,9 +140,9 @@ fn repeated_speeds_count_by_their_errors() {
 
 #[test]
 fn without_errors_speeds_count_alike_and_moduli_have_no_covariance() {
-    let mut numbers = Numbers::new(3);
+    let mut random = Random::new(3);
     let more = [SIX, SIX.map(|w| w), SIX].concat();
-    let mut speeds = with_errors(&exact(&more), &[0.003], &mut numbers);
+    let mut speeds = with_errors(&exact(&more), &[0.003], &mut random);
     for speed in &mut speeds {
         speed.stddev = None;
     }
@@ -161,7 +162,7 @@ fn without_errors_speeds_count_alike_and_moduli_have_no_covariance() {
 
 #[test]
 fn a_speed_without_an_error_is_taken_as_no_better_than_the_worst() {
-    let mut speeds = with_errors(&exact(&SIX), &[0.001, 0.004], &mut Numbers::new(4));
+    let mut speeds = with_errors(&exact(&SIX), &[0.001, 0.004], &mut Random::new(4));
     speeds[2].stddev = Some(0.004 * speeds[2].speed);
     let stated = sample().fit(&speeds).unwrap();
     speeds[2].stddev = None;
@@ -173,9 +174,9 @@ fn a_speed_without_an_error_is_taken_as_no_better_than_the_worst() {
 
 #[test]
 fn a_speed_of_another_state_is_a_conflict_and_is_named() {
-    let mut numbers = Numbers::new(5);
+    let mut random = Random::new(5);
     let more = [&SIX[..], &[Wave::Sv(90.0), Wave::Sh(45.0), Wave::P(25.0), Wave::P(70.0)]].concat();
-    let mut speeds = with_errors(&exact(&more), &[0.003], &mut numbers);
+    let mut speeds = with_errors(&exact(&more), &[0.003], &mut random);
     assert_eq!(sample().fit(&speeds).unwrap().conflict, None);
     speeds[6].speed *= 1.05;
     let conflict = sample().fit(&speeds).unwrap().conflict.expect("5 % is 17 sigma");
@@ -185,11 +186,11 @@ fn a_speed_of_another_state_is_a_conflict_and_is_named() {
 /// At 30 % no claim holds; the result must still be an estimate, or an error with its reason.
 #[test]
 fn useless_speeds_do_no_harm() {
-    let mut numbers = Numbers::new(6);
+    let mut random = Random::new(6);
     let (mut answers, mut refusals) = (0, 0);
     for relative in [0.05, 0.3, 1.0, 3.0] {
         for _ in 0..500 {
-            let mut speeds = with_errors(&exact(&SIX), &[relative], &mut numbers);
+            let mut speeds = with_errors(&exact(&SIX), &[relative], &mut random);
             speeds.iter_mut().for_each(|s| s.speed = s.speed.abs());
             match sample().fit(&speeds) {
                 Ok(fitted) => {

@@ -1,6 +1,6 @@
 //! Every error and every warning.
 
-use crate::{PAPER_MODELS, model};
+use crate::{PAPER_MODELS, model, ours};
 use grainlab_core::contact::{ContactLaw, SpringLaw};
 use grainlab_core::results::StrainRatios;
 use grainlab_core::results::{InferredQuantity, Microstructure};
@@ -68,15 +68,31 @@ fn models_of_smooth_spheres_have_no_estimate_for_another_contact_law_and_that_of
         for model in grainlab_emt::models() {
             let mut o = sound();
             o.conditions.contact_law = Some(ContactLaw::of(springs));
-            let refused = model.infer(&o, Calibration::builtin("grainlab").unwrap()).unwrap_err();
+            let refused = model.infer(&o, ours()).unwrap_err();
             assert_eq!(refused, EmtError::OtherContactLaw { law: springs.name() }, "{}", model.name());
             assert!(!refused.is_input_error() && refused.to_string().starts_with("unknown: "), "{refused}");
         }
         let mut o = sound();
         o.conditions.contact_law = Some(ContactLaw::of(springs));
-        let found =
-            grainlab_emt::free_contact().infer(&o, Calibration::builtin("grainlab").unwrap()).unwrap();
+        let found = grainlab_emt::free_contact().infer(&o, ours()).unwrap();
         assert!(found.structure.z.is_some_and(|z| (4.0..6.6).contains(&z)), "{found:?}");
+    }
+}
+
+/// The stiffness of linear springs does not follow from a material, which a scene with such springs need not have.
+#[test]
+fn an_estimate_for_linear_springs_does_not_depend_on_the_material_of_the_grains() {
+    let of = |factor: f64| {
+        let mut o = sound();
+        o.conditions.contact_law = Some("linear:1e5,0.5".parse().unwrap());
+        o.conditions.material = Some(Material { shear_modulus: factor * 29e9, ..Material::GLASS });
+        grainlab_emt::free_contact().infer(&o, ours()).unwrap()
+    };
+    let [glass, soft, hard] = [1.0, 1e-4, 1e3].map(of);
+    for other in [&soft, &hard] {
+        let [a, b] = [&glass, other].map(|e| (e.structure.z.unwrap(), e.structure.eps.unwrap()));
+        assert!((a.0 - b.0).abs() < 0.02 && (a.1 - b.1).abs() < 0.005, "{a:?} {b:?}");
+        assert!(!other.warnings.iter().any(|w| w.to_string().contains("p/E*")), "{:?}", other.warnings);
     }
 }
 
@@ -85,7 +101,7 @@ fn no_model_has_an_estimate_for_moduli_without_tangential_springs() {
     for model in grainlab_emt::models() {
         let mut o = sound();
         o.conditions.smooth = true;
-        let refused = model.infer(&o, Calibration::builtin("grainlab").unwrap());
+        let refused = model.infer(&o, ours());
         assert_eq!(Status::of(&refused), Status::Unknown);
         assert_eq!(refused.unwrap_err(), EmtError::SmoothGrains, "{}", model.name());
     }
@@ -98,7 +114,9 @@ fn numbers_that_are_not_finite_are_named() {
             assert!(fault(|o| set(o, modulus, value)).to_string().contains(modulus.name()));
         }
     }
-    assert!(fault(|o| o.conditions.pressure.value = f64::NEG_INFINITY).to_string().contains("pressure"));
+    for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        assert!(fault(|o| o.conditions.pressure.value = value).to_string().contains("pressure"));
+    }
     for change in [
         (|o: &mut Observation| o.conditions.gamma.value = f64::NAN) as fn(&mut Observation),
         |o| o.conditions.gamma.stddev = f64::NAN,
@@ -113,15 +131,21 @@ fn numbers_that_are_not_finite_are_named() {
 
 #[test]
 fn moduli_and_pressure_must_be_positive() {
-    for change in [
-        (|o: &mut Observation| set(o, Modulus::G12, 0.0)) as fn(&mut Observation),
-        |o| set(o, Modulus::G13, -1.0),
-        |o| set(o, Modulus::Theta, 0.0),
-        |o| set(o, Modulus::C33, -1.0),
-        |o| o.conditions.pressure.value = -50.0e3,
-        |o| o.conditions.material = Some(Material { shear_modulus: 0.0, ..Material::GLASS }),
-    ] {
-        assert!(matches!(fault(change), EmtError::NotPositive { .. }));
+    let refused = |name: &str, change: &dyn Fn(&mut Observation)| {
+        let e = fault(change);
+        assert!(
+            matches!(e, EmtError::NotPositive { quantity, .. } if quantity.contains(name)),
+            "{name}: {e}"
+        );
+    };
+    for value in [0.0, -1.0] {
+        Modulus::ALL
+            .into_iter()
+            .filter(|m| *m != Modulus::C13)
+            .for_each(|m| refused(m.name(), &|o| set(o, m, value)));
+        refused("pressure", &|o| o.conditions.pressure.value = value);
+        let grains = Material { shear_modulus: value, ..Material::GLASS };
+        refused("shear modulus", &|o| o.conditions.material = Some(grains));
     }
 }
 
@@ -135,7 +159,7 @@ fn states_that_no_packing_has_are_refused() {
         let e = fault(|o| o.conditions.stress_ratio = Some(Measured::exact(ratio)));
         assert!(matches!(e, EmtError::NoState { .. }), "{e}");
     }
-    for nu in [-0.1, 0.51, f64::NAN] {
+    for nu in [-0.1, 0.5 + 1e-9, f64::NAN] {
         let grains = Material { poisson_ratio: nu, ..Material::GLASS };
         let e = fault(|o| o.conditions.material = Some(grains));
         assert!(matches!(e, EmtError::NoState { .. }), "{e}");
@@ -188,30 +212,12 @@ fn ratios_that_no_anisotropy_gives_at_that_strain_are_refused() {
     }
 }
 
-/// k̂ → ∞ where G12/Θ = α/ρ = 2.27 for r = 1, g = 0.
-#[test]
-fn shear_too_stiff_for_the_bulk_is_refused_with_the_limit() {
-    let with = |share: f64| {
-        let g12 = share * 170.0 / 75.0 * 100.0e6;
-        Observation::from_g12_g13_theta(g12, g12, 100.0e6, 50.0e3, StrainRatio::given(0.0))
-    };
-    let refused = model("ratio").infer(&with(1.0 + 1e-12), &Calibration::PAPER).unwrap_err();
-    let EmtError::ShearTooStiff { limit, .. } = &refused else { panic!("{refused}") };
-    assert!((limit - 170.0 / 75.0).abs() < 1e-14);
-    assert!(refused.to_string().contains("`paper`"));
-    let near = estimate(&with(0.999));
-    assert!(near.warnings.iter().any(|w| matches!(w, Warning::CoordinationImpossible { .. })));
-}
-
 #[test]
 fn each_warning_fires_outside_its_range_and_marks_the_estimate_extrapolated() {
     let warned = |e: Estimate, expected: fn(&Warning) -> bool| {
         assert!(e.warnings.iter().any(expected), "{:?}", e.warnings);
         assert_eq!(e.status, Status::Extrapolated);
     };
-    warned(of_structure(4.9, 4.79, 0.0, 0.0), |w| {
-        matches!(w, Warning::OutsideFit { quantity: InferredQuantity::KHat, range: [4.8, _], .. })
-    });
     warned(of_structure(5.5, 5.5, 0.1, -0.35), |w| matches!(w, Warning::GammaLarge { .. }));
     let with = |change: fn(&mut Observation)| {
         let mut o = sound();
@@ -258,10 +264,10 @@ fn an_orthotropic_stiffness_is_used_with_a_warning_that_has_its_asymmetry() {
         c[(3, 3)] *= 1.0 + share;
         Stiffness(c)
     };
-    for name in PAPER_MODELS {
+    for name in PAPER_MODELS.into_iter().chain(["relaxed"]) {
         let infer = |share: f64| {
             let o = Observation::of_stiffness(&orthotropic(share), conditions);
-            model(name).infer(&o, &Calibration::PAPER).unwrap()
+            model(name).infer(&o, model(name).default_calibration()).unwrap()
         };
         let warned = |e: &Estimate| {
             e.warnings
@@ -270,7 +276,9 @@ fn an_orthotropic_stiffness_is_used_with_a_warning_that_has_its_asymmetry() {
         };
         assert!(!warned(&infer(0.0)) && !warned(&infer(0.01)), "{name}");
         let e = infer(0.5);
-        assert!(warned(&e) && e.status == Status::Extrapolated, "{name}: {:?}", e.warnings);
+        // The relaxed network has scatter that so large an asymmetry exceeds.
+        let status = if name == "relaxed" { Status::Contradictory } else { Status::Extrapolated };
+        assert!(warned(&e) && e.status == status, "{name}: {:?}", e.warnings);
     }
 }
 
@@ -309,7 +317,7 @@ fn a_calibration_that_could_not_be_inverted_is_refused_by_field() {
 
 #[test]
 fn a_calibration_file_with_an_impossible_number_or_of_an_earlier_version_is_refused() {
-    let text = Calibration::builtin("grainlab").unwrap().to_toml().unwrap();
+    let text = ours().to_toml().unwrap();
     for (sound, damaged, at_fault) in [
         ("density = 2500.0", "density = 0.0", "material.density"),
         ("grains = 2000", "grains = 0", "network.grains"),
@@ -348,8 +356,7 @@ fn a_modulus_with_a_huge_error_is_one_that_is_not_known() {
     o.conditions.stress_ratio = Some(Measured::exact(0.0));
     o.conditions.size_spread = Some(0.0);
     let relaxed = grainlab_emt::model("relaxed").unwrap();
-    let ours = Calibration::builtin("grainlab").unwrap();
-    let infer = |o: &Observation| relaxed.infer(o, ours).unwrap();
+    let infer = |o: &Observation| relaxed.infer(o, ours()).unwrap();
     let mut without = o.clone();
     without.moduli = without.moduli.without(Modulus::G12);
     let covariance = o.covariance.as_mut().unwrap();
@@ -368,7 +375,7 @@ fn a_modulus_with_a_huge_error_is_one_that_is_not_known() {
 fn unknown_errors_of_the_moduli_and_large_ones_of_the_state_are_said() {
     let says = |o: &Observation, wanted: fn(&Warning) -> bool| {
         let relaxed = grainlab_emt::model("relaxed").unwrap();
-        relaxed.infer(o, Calibration::builtin("grainlab").unwrap()).unwrap().warnings.iter().any(wanted)
+        relaxed.infer(o, ours()).unwrap().warnings.iter().any(wanted)
     };
     let no_errors = |w: &Warning| matches!(w, Warning::DataErrorUnknown);
     assert!(says(&sound(), no_errors) && !says(&sound().with_relative_error(0.01), no_errors));
@@ -384,4 +391,31 @@ fn the_constants_of_the_paper_are_not_used_above_the_packings_that_their_errors_
     let dense = of_structure(5.5, 8.0, 0.02, -0.05);
     assert_eq!(dense.status, Status::Extrapolated, "{:?}", dense.warnings);
     assert_eq!(of_structure(5.5, 5.6, 0.02, -0.05).status, Status::Ok);
+}
+
+/// q/p of three stresses has no sign. The ratio that models take has one: axial minus lateral stress over pressure.
+#[test]
+fn a_stress_ratio_with_a_sign_is_called_the_axial_one() {
+    let unknown = Warning::StressRatioUnknown.to_string();
+    assert!(
+        unknown.starts_with("the axial stress ratio is not known") && !unknown.contains("q/p"),
+        "{unknown}"
+    );
+    let mut o = sound();
+    o.conditions.stress_ratio = Some(Measured::exact(-0.9));
+    let structure = Microstructure { z: Some(5.3), ..Microstructure::paper(4.8, 5.3, 0.02) };
+    let refused = model("relaxed").predict(&structure, &o.conditions, ours()).unwrap_err();
+    assert!(
+        matches!(refused, EmtError::OutsideDomain { quantity: "the axial stress ratio", .. }),
+        "{refused}"
+    );
+}
+
+/// A size of the grains may be known all the same.
+#[test]
+fn a_model_that_takes_no_size_of_the_grains_does_not_call_the_size_unknown() {
+    for law in ["linear", "rough"] {
+        let text = Warning::ContactsStated { law }.to_string();
+        assert!(text.contains("it takes no size of the grains") && !text.contains("not known"), "{text}");
+    }
 }

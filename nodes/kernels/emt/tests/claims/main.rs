@@ -12,13 +12,18 @@ mod quadrature;
 mod recovery;
 mod relaxed;
 mod rock_physics;
-mod sampling;
 mod simulated;
 mod sphere;
+mod status;
 mod table3;
 
 /// The models of the paper, with its errata and approximations: all that use G12, G13 and γ/Δ.
 const PAPER_MODELS: [&str; 3] = ["emt", "ratio", "ratio-as-printed"];
+
+/// The calibration learned from packings.
+fn ours() -> &'static grainlab_emt::Calibration {
+    grainlab_emt::Calibration::builtin("grainlab").unwrap()
+}
 
 /// The model of this name.
 fn model(name: &str) -> &'static dyn grainlab_emt::Model {

@@ -1,19 +1,17 @@
 //! Draws, evidence, predictive checks and ranks.
 
+use crate::ours;
 use crate::simulated::{BINS, simulated_ranks};
 use grainlab_core::Material;
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{
-    Calibration, Conditions, Density, EmtError, Measured, Model, Moduli, Modulus, Observation, Posterior,
+    Conditions, Density, EmtError, Measured, Model, Moduli, Modulus, Observation, Posterior,
     PosteriorSettings, Prior, Relaxed, StrainRatio,
 };
+use grainlab_testkit::{Random, nightly};
 use nalgebra::{DMatrix, DVector};
 
 const SETTINGS: PosteriorSettings = PosteriorSettings { points: 65_536, seed: 1 };
-
-fn ours() -> &'static Calibration {
-    Calibration::builtin("grainlab").unwrap()
-}
 
 fn conditions() -> Conditions {
     Conditions {
@@ -178,22 +176,24 @@ fn an_observation_unlike_any_packing_is_improbable_and_an_ordinary_one_is_not() 
     assert!(odd.least().unwrap().left_out.unwrap() < 1e-10, "{odd:?}");
 }
 
-/// 600 structures from the ranges of the calibration; χ² of 20 bins. `--nocapture` prints χ².
+/// 600 structures from the ranges of the calibration, or a fifth of them; χ² of 20 bins. `--nocapture` prints χ².
 #[test]
 fn ranks_of_true_values_among_draws_are_uniform_for_the_scatter_that_the_model_states() {
     let prior = Prior::default()
         .with(InferredQuantity::Z, Density::uniform(4.2, 6.4).unwrap())
         .with(InferredQuantity::Eps, Density::uniform(-0.08, 0.13).unwrap());
     let mut counts = vec![[0.0; BINS]; 4];
-    for index in 0..600 {
-        let ranks = simulated_ranks(&Relaxed, ours(), &prior, conditions(), index).unwrap();
+    let mut random = Random::new(1);
+    let count = nightly(120, 600);
+    for _ in 0..count {
+        let ranks = simulated_ranks(&Relaxed, ours(), &prior, conditions(), &mut random).unwrap();
         assert_eq!(ranks.len(), counts.len());
         for (counts, share) in counts.iter_mut().zip(&ranks) {
             counts[((share * BINS as f64) as usize).min(BINS - 1)] += 1.0;
         }
     }
     for (counts, q) in counts.iter().zip(["z", "eps", "eps_stiffness", "k"]) {
-        let expected = 600.0 / BINS as f64;
+        let expected = f64::from(count) / BINS as f64;
         let chi_square: f64 = counts.iter().map(|c| (c - expected).powi(2) / expected).sum();
         eprintln!("{q}: chi-square {chi_square:.1}, {counts:?}");
         // A larger one comes by chance in 0.0125 of all, four quantities in 0.05.

@@ -1,14 +1,11 @@
 //! Prior files, and estimates with a prior.
 
+use crate::ours;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 use grainlab_emt::{
     Calibration, Conditions, Density, EmtError, Estimate, Measured, Model, Moduli, Modulus, Observation,
     Prior, PriorError, Relaxed, Status, Warning,
 };
-
-fn ours() -> &'static Calibration {
-    Calibration::builtin("grainlab").unwrap()
-}
 
 fn observation() -> Observation {
     let moduli = Moduli::of_values([74.2e6, 81.8e6, 137.0e6, 226.7e6, 264.8e6, 89.5e6].map(Some));

@@ -1,6 +1,6 @@
 //! First-order error propagation.
 
-use crate::cases::{Random, calibrations};
+use crate::cases::{calibrations, pressure};
 use crate::{model, table3};
 use grainlab_core::results::InferredQuantity;
 use grainlab_core::{Mat3, Material};
@@ -8,6 +8,7 @@ use grainlab_emt::{
     Calibration, Conditions, EmtError, Estimate, INPUTS, Jacobian, Measured, Modulus, Observation,
     StrainRatio, StrainRatioSource, models,
 };
+use grainlab_testkit::Random;
 use nalgebra::SVector;
 use proptest::prelude::*;
 
@@ -104,18 +105,20 @@ fn slopes_of_every_model_undo_those_of_its_forward_map() {
     for calibration in calibrations() {
         for model in models() {
             let domain = model.domain(&calibration);
-            let inner = |[low, high]: [f64; 2]| [0.9 * low + 0.1 * high, 0.1 * low + 0.9 * high];
+            let inner = |[low, high]: [f64; 2], random: &mut Random| {
+                random.between(0.9 * low + 0.1 * high, 0.1 * low + 0.9 * high)
+            };
             let mut random = Random::new(7);
             for _ in 0..200 {
                 let structure = grainlab_core::results::Microstructure::of_values(
-                    domain.structure.map(|r| r.map(|r| random.within(inner(r)))),
+                    domain.structure.map(|r| r.map(|r| inner(r, &mut random))),
                 );
                 let conditions = Conditions {
-                    gamma: StrainRatio::given(random.within(inner(domain.gamma))),
-                    solid_fraction: Some(Measured::exact(random.within([0.52, 0.7]))),
-                    stress_ratio: Some(Measured::exact(random.within([-0.15, 0.25]))),
-                    size_spread: Some(random.within([0.0, 0.2])),
-                    ..Conditions::at(random.pressure(&domain, calibration.material()))
+                    gamma: StrainRatio::given(inner(domain.gamma, &mut random)),
+                    solid_fraction: Some(Measured::exact(random.between(0.52, 0.7))),
+                    stress_ratio: Some(Measured::exact(random.between(-0.15, 0.25))),
+                    size_spread: Some(random.between(0.0, 0.2)),
+                    ..Conditions::at(pressure(&mut random, &domain, calibration.material()))
                 };
                 let predict = |s: &grainlab_core::results::Microstructure, c: &Conditions| {
                     model.predict(s, c, &calibration)
@@ -220,21 +223,6 @@ fn one_percent_on_each_modulus_costs_what_is_known() {
 }
 
 #[test]
-fn an_error_of_g_reaches_eps_and_k_but_not_the_corrected_k_hat() {
-    let sigma = |name: &str| {
-        let row = &table3::rows()[8];
-        let mut o = row.observation().with_relative_error(0.0);
-        o.conditions.gamma.stddev = 0.05;
-        let e = model(name).infer(&o, &Calibration::PAPER).unwrap();
-        [InferredQuantity::KHat, InferredQuantity::Eps].map(|q| of_data(&e, q))
-    };
-    let [k_hat, eps] = sigma("ratio");
-    // Rounding over the step of the differences, 1e-5, times the error of g.
-    assert!(k_hat < 1e-11 && eps > 0.04, "{k_hat} {eps}");
-    assert!(sigma("ratio-as-printed")[0] > 1e-3);
-}
-
-#[test]
 fn unknown_errors_of_data_leave_that_of_the_model_and_known_ones_give_the_95_percent_interval() {
     let o = table3::rows()[0].observation();
     let unknown = model("ratio").infer(&o, &Calibration::PAPER).unwrap();
@@ -268,16 +256,4 @@ fn information_is_the_contribution_of_each_datum() {
         of_k[Modulus::Theta as usize] > 0.95 && (of_k.iter().sum::<f64>() - 1.0).abs() < 1e-12,
         "{of_k:?}"
     );
-}
-
-/// A common error of two moduli does not cancel in their sum, but does in their ratio.
-#[test]
-fn an_error_that_both_shear_moduli_share_does_not_reach_eps() {
-    let row = &table3::rows()[0];
-    let o = row.observation();
-    let [g12, g13, ..] = o.moduli.values().map(|m| m.unwrap_or(0.0));
-    let shared = nalgebra::Vector3::new(0.05 * g12, 0.05 * g13, 0.0);
-    let o = o.with_g12_g13_theta_covariance(&(shared * shared.transpose()));
-    let e = model("ratio").infer(&o, &Calibration::PAPER).unwrap();
-    assert!(of_data(&e, InferredQuantity::Eps) < 1e-6 && of_data(&e, InferredQuantity::KHat) > 0.1);
 }

@@ -1,14 +1,18 @@
 //! Every model of the list against its own forward map. A new model in the list is tested automatically.
 
-use crate::cases::{Random, calibrations};
+use crate::cases::{calibrations, case};
 use grainlab_core::Material;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 use grainlab_emt::{
     Calibration, Conditions, Domain, EmtError, Measured, Model, Observation, StrainRatio, models,
 };
+use grainlab_testkit::{Random, nightly};
 use proptest::prelude::*;
 
-const CASES: usize = 100_000;
+/// Cases of each model and calibration.
+fn cases() -> usize {
+    nightly(5_000, 100_000)
+}
 
 /// Every model with every calibration that contains its constants, and its domain there; each has at least
 /// one.
@@ -18,7 +22,7 @@ fn calibrated() -> Vec<(&'static dyn Model, Calibration, Domain)> {
         let before = all.len();
         for calibration in calibrations() {
             let domain = model.domain(&calibration);
-            let (structure, conditions) = Random::new(0).case(&domain);
+            let (structure, conditions) = case(&mut Random::new(0), &domain);
             match model.predict(&structure, &conditions, &calibration) {
                 Err(EmtError::NotCalibrated { .. }) => {}
                 _ => all.push((*model, calibration, domain)),
@@ -33,8 +37,8 @@ fn calibrated() -> Vec<(&'static dyn Model, Calibration, Domain)> {
 fn every_model_inverts_its_own_prediction_over_its_whole_domain_ends_included() {
     for (seed, (model, calibration, domain)) in calibrated().into_iter().enumerate() {
         let mut random = Random::new(seed as u64);
-        for _ in 0..CASES {
-            let (truth, conditions) = random.case(&domain);
+        for _ in 0..cases() {
+            let (truth, conditions) = case(&mut random, &domain);
             let here = || format!("{} ({}): {truth:?} {conditions:?}", model.name(), calibration.name());
             let moduli = model
                 .predict(&truth, &conditions, &calibration)

@@ -5,23 +5,8 @@ use grainlab_core::results::{InferredQuantity, Microstructure};
 use grainlab_emt::{
     Calibration, Conditions, EmtError, Model, Moduli, Observation, Posterior, PosteriorSettings, Prior,
 };
+use grainlab_testkit::Random;
 use nalgebra::{SVector, Vector2};
-use rand_pcg::Pcg64Mcg;
-use rand_pcg::rand_core::{Rng, SeedableRng};
-
-struct Random(Pcg64Mcg);
-
-impl Random {
-    fn uniform(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn normal<const N: usize>(&mut self) -> SVector<f64, N> {
-        let mut one =
-            || (-2.0 * (1.0 - self.uniform()).ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos();
-        SVector::from_fn(|_, _| one())
-    }
-}
 
 /// Draws per simulation: with the true value, a multiple of the number of bins.
 const DRAWS: usize = 99;
@@ -38,27 +23,26 @@ const TRIES: usize = 1000;
 /// Standard deviation of each measured modulus over its value for the mean structure of the prior.
 const ERROR: f64 = 0.01;
 
-/// The share of draws below the true value of each quantity, in simulation `index` at this state.
+/// The share of draws below the true value of each quantity, in one simulation at this state.
 pub(crate) fn simulated_ranks(
     model: &dyn Model,
     calibration: &Calibration,
     prior: &Prior,
     conditions: Conditions,
-    index: u64,
+    random: &mut Random,
 ) -> Result<Vec<f64>, EmtError> {
     let complete = prior.completed(&model.prior_domain(calibration))?;
     // The error of the data is the same in all simulations, so that it says nothing of the structure.
     let typical = typical_observation(model, calibration, &complete, conditions)?;
-    let mut random = Random(Pcg64Mcg::seed_from_u64(index));
     let likelihood = model.likelihood(&typical, calibration)?;
     // The prior is that of the structures for which the model predicts moduli.
     let drawn = (0..TRIES).find_map(|_| {
-        let of = |q: &InferredQuantity| Some(complete.get(*q)?.quantile(random.uniform()));
+        let of = |q: &InferredQuantity| Some(complete.get(*q)?.quantile(random.unit()));
         let unknowns = likelihood.unknowns().iter().map(of).collect::<Option<Vec<f64>>>()?;
         Some((likelihood.at(&unknowns)?, unknowns))
     });
     let (predicted, unknowns) = drawn.unwrap();
-    let difference = predicted.replicated(&random.normal());
+    let difference = predicted.replicated(&SVector::from_fn(|_, _| random.normal()));
     let observed = likelihood.moduli().iter().zip(likelihood.observed());
     let simulated =
         observed.fold(Moduli::NONE, |all, (m, value)| all.with(*m, value + difference[*m as usize]));
@@ -68,10 +52,10 @@ pub(crate) fn simulated_ranks(
     if !likelihood.following().is_empty() {
         let (mean, covariance) = at.following;
         let root = covariance.cholesky().map_or_else(nalgebra::Matrix2::zeros, |c| c.l());
-        let following: Vector2<f64> = mean + root * random.normal::<2>();
+        let following: Vector2<f64> = mean + root * Vector2::from_fn(|_, _| random.normal());
         truth.extend(following.iter());
     }
-    let own = PosteriorSettings { points: POINTS, seed: random.0.next_u64() };
+    let own = PosteriorSettings { points: POINTS, seed: (random.unit() * 1e9) as u64 };
     let posterior = Posterior::new(model, &observation, calibration, prior, own)?;
     let draws = posterior.draws(DRAWS)?;
     let share = |(quantity, truth): (InferredQuantity, f64)| {

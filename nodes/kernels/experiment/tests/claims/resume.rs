@@ -1,7 +1,6 @@
 //! A packing and its run state are a checkpoint: a run resumed from them continues bit for bit.
 
 use crate::{begin, path};
-use grainlab_core::Packing;
 use grainlab_dem::{Compute, DemError};
 use grainlab_experiment::{ExperimentError, PathPosition, Simulation, StrainOrigin};
 use grainlab_scene::{Condition, Measure, Scene};
@@ -42,24 +41,11 @@ fn event_driven() -> String {
     SCENE.replace("method = \"soft\"\nrate = -60.0\ncontrol_period = 100", "rate = -60.0\ncontrol_period = 3")
 }
 
+/// In the middle of each phase, and where each begins.
 #[test]
 fn a_run_resumed_at_any_request_equals_the_run_that_went_on() {
-    resumes(&SCENE);
-}
-
-#[test]
-fn a_run_with_resistance_to_rolling_resumed_at_any_request_equals_the_run_that_went_on() {
-    let end = resumes(&format!(
-        "{}\n[contact]\nrolling_stiffness = 1e4\nrolling_damping = 1e-3\nrolling_friction = 0.1\n",
-        *SCENE
-    ));
-    assert!(end.contacts.iter().any(|c| c.rolling_force.norm() > 0.0));
-}
-
-/// Resumes the run of a scene in the middle of each phase and where each begins; its last packing.
-fn resumes(scene: &str) -> Packing {
     // The phase of every request.
-    let (mut run, mut phases) = (begin(scene), Vec::new());
+    let (mut run, mut phases) = (start(), Vec::new());
     while run.request().is_some() {
         phases.push(run.path().phase);
         advance(&mut run);
@@ -72,11 +58,11 @@ fn resumes(scene: &str) -> Packing {
         let length = phases.iter().filter(|p| **p == phase).count();
         saves.extend([first, first + length / 2]);
     }
-    let mut first = begin(scene);
+    let mut first = start();
     for (at, phase) in phases.iter().enumerate() {
         if saves.contains(&at) {
             let saved = (first.packing().unwrap(), first.run_state().unwrap());
-            let mut second = Simulation::resume(Scene::parse(scene).unwrap(), &saved.0, &saved.1).unwrap();
+            let mut second = Simulation::resume(Scene::parse(&SCENE).unwrap(), &saved.0, &saved.1).unwrap();
             while advance(&mut second) {}
             // Every number of both states, contact history and run state included.
             assert_eq!(second.packing().unwrap(), end, "resumed at request {at}, in phase {phase}");
@@ -84,7 +70,6 @@ fn resumes(scene: &str) -> Packing {
         }
         advance(&mut first);
     }
-    end
 }
 
 #[test]
@@ -191,16 +176,6 @@ fn an_event_driven_gas_accepts_isotropic_rates_only_and_reports_jamming() {
     };
     assert!(matches!(error, ExperimentError::Engine(DemError::Jammed { .. })), "{error}");
     assert!(run.packing().unwrap().validated().is_ok());
-}
-
-#[test]
-fn observing_changes_nothing() {
-    let (mut plain, mut watched) = (start(), start());
-    while advance(&mut plain) {
-        let _ = (watched.packing().unwrap(), watched.run_state().unwrap(), watched.engine().observables());
-        assert!(advance(&mut watched));
-    }
-    assert_eq!(plain.packing().unwrap(), watched.packing().unwrap());
 }
 
 #[test]

@@ -1,11 +1,11 @@
 //! A drag on motion produces stress without contacts that sustain it.
 
-use crate::support::*;
 use grainlab_core::ServoLaw;
 use grainlab_dem::{Engine, TimeStep};
 use grainlab_experiment::Simulation;
 use grainlab_scene::Scene;
 use grainlab_servo::ServoInput;
+use grainlab_testkit::engine::*;
 
 const DRAG: f64 = 4e5;
 
@@ -75,8 +75,7 @@ until = {{ on_target = 0.05, unbalanced = 1e-4, timeout = 0.2 }}
         run.advance(&grainlab_servo::control(&input).unwrap().rate).unwrap();
     }
     let p = run.packing().unwrap();
-    let mut e = Engine::from_packing(&p, setting(0.1, p.time_step)).unwrap();
-    e.initialise().unwrap();
+    let mut e = taken_up(&p, setting(0.1, p.time_step));
     let kept = left(&mut e);
     assert!((kept / target - 1.0).abs() < 0.06, "on target to 5 %: {kept}");
     let met = grainlab_core::stress::stress(&p).tensor.mean();

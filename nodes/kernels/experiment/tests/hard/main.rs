@@ -3,6 +3,3 @@
 mod drag;
 mod rattlers;
 mod scenes;
-#[allow(dead_code)] // used by the tests of the engine
-#[path = "../../../dem/tests/hard/support.rs"]
-mod support;

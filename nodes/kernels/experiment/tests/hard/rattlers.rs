@@ -1,11 +1,11 @@
 //! A grain with two contacts, whose spin the contact law does not resist.
 
-use crate::support::*;
 use grainlab_core::{Mat3, Packing, Vec3};
 use grainlab_dem::{Engine, EngineSettings};
 use grainlab_experiment::Simulation;
 use grainlab_scene::Scene;
 use grainlab_servo::ServoInput;
+use grainlab_testkit::engine::*;
 
 /// A zigzag column of two grains and their images, each with two contacts inclined by `lean` (rad) to either
 /// side: at rest under friction, its force along the line through the contact points.

@@ -23,6 +23,9 @@ pub(crate) struct Descent<'a, T, const G: bool> {
     taken: Vec<Rows<T>>,
     /// True if a direction of negative stiffness was found, which requires prestress.
     pub(crate) unstable: bool,
+    /// Number of iterations to the least residual of a column, if the descent ended because a direction of the column met no
+    /// resistance, or its residual had grown by [`Goal::growth`].
+    pub(crate) lost_after: Option<u32>,
 }
 
 impl<'a, T: Real, const G: bool> Descent<'a, T, G> {
@@ -36,6 +39,7 @@ impl<'a, T: Real, const G: bool> Descent<'a, T, G> {
             half: zero(),
             taken: zero(),
             unstable: false,
+            lost_after: None,
         }
     }
 
@@ -44,7 +48,7 @@ impl<'a, T: Real, const G: bool> Descent<'a, T, G> {
     /// the number of iterations.
     #[inline(always)]
     fn descend<V: Lanes<T = T>>(&mut self, v: V, goal: &Goal) -> u32 {
-        let Goal { squares, targets, limit } = goal;
+        let Goal { squares, targets, limit, growth } = goal;
         let mut far = [false; WIDTH];
         for l in 0..WIDTH {
             far[l] = squares[l] > targets[l];
@@ -56,6 +60,8 @@ impl<'a, T: Real, const G: bool> Descent<'a, T, G> {
         let (mut alpha, mut beta) = ([0.0; WIDTH], [0.0; WIDTH]);
         // Squared norm of the residual r over ρ = r̂ᵀ D r̂, at the last check.
         let mut share = ratios(squares, &rho);
+        let mut least = rho.map(|rho| (rho, 0));
+        self.lost_after = None;
         let mut done = *limit;
         for iteration in 0..*limit {
             let mut energy = self.back(v, &alpha, &beta);
@@ -66,10 +72,20 @@ impl<'a, T: Real, const G: bool> Descent<'a, T, G> {
             alpha = ratios(&rho, &energy);
             for l in 0..WIDTH {
                 self.unstable |= G && far[l] && (energy[l] < 0.0 || rho[l] < 0.0);
+                let is_lost = growth.is_some_and(|growth| energy[l] <= 0.0 || rho[l] > growth * least[l].0);
+                if far[l] && is_lost {
+                    self.lost_after = Some(self.lost_after.map_or(least[l].1, |after| after.min(least[l].1)));
+                } else if rho[l] < least[l].0 {
+                    least[l] = (rho[l], iteration);
+                }
                 // A converged column is not changed any more, so that its rounding errors cannot grow.
                 if !far[l] {
                     alpha[l] = 0.0;
                 }
+            }
+            if self.lost_after.is_some() {
+                done = iteration + 1;
+                break;
             }
             let before = rho;
             rho = self.forth(v, &alpha);
@@ -178,6 +194,9 @@ pub(crate) struct Goal {
     pub(crate) targets: [f64; WIDTH],
     /// Maximum number of iterations.
     pub(crate) limit: u32,
+    /// Growth of a squared residual at which the descent ends, as it does at a direction that meets no resistance; none if it does at
+    /// neither.
+    pub(crate) growth: Option<f64>,
 }
 
 /// A precision of a descent, with the widest vectors that the processor has for it.

@@ -4,6 +4,7 @@ use super::bounds::uniform_rotation_stiffness;
 use super::solve::{Solution, Solver, left};
 use super::spring_network::{GrainDofs, SpringNetwork};
 use crate::error::MicroError;
+use crate::tolerances::TOLERANCES;
 use grainlab_core::Stiffness;
 use nalgebra::Matrix6;
 
@@ -19,11 +20,18 @@ const ROUNDING: f64 = 1e-15;
 /// does one below the tolerance of the solve).
 const FLOPPY: f64 = 1e-9;
 
+/// Upper bound of the largest stiffness, over the affine one, below which a network has none although its motions were not found.
+/// The forces of a packing at rest are a state of self-stress, which resists compression with tenths of the affine stiffness.
+const FLOPPY_BOUND: f64 = 1e-6;
+
 /// Smallest relative residual that a solve can reach in double precision.
 const FINEST: f64 = 1e-14;
 
 /// Difference of the two evaluations, as a fraction of the largest entry of A, above which a solve counts as failed.
 const COARSEST: f64 = 1e-4;
+
+/// Share of a tolerance that is tried where the two evaluations differ at it.
+const LOWERED: f64 = 1e-3;
 
 /// Share of its residual to which a solution is corrected, in order to measure its error.
 const CORRECTED: f64 = 0.1;
@@ -49,6 +57,9 @@ pub struct NetworkStiffness {
 /// one where the network is so soft that the two evaluations below differ by more than a thousand times that; `None` if the
 /// network resists no strain.
 ///
+/// The energy of any motion is an upper bound of the stiffness (minimum of potential energy). If the solve does not converge, and
+/// that bound is below 1e-6 of the affine stiffness, the network resists no strain either.
+///
 /// The relaxed stiffness is evaluated by energy, with an error of second order in the residual and from
 /// above, and by stress, with an error of first order. Their agreement checks the solve. 0 ≤ C ≤ B ≤ A is checked by
 /// eigenvalues, with the stiffness B of affine motion and a uniform rotation.
@@ -56,7 +67,38 @@ pub struct NetworkStiffness {
 /// The error of C is eᵀ K e/V, with e the error of the motion. Conjugate gradients leave a residual r at right angles to the
 /// motion, so that both evaluations agree far better than either with the exact C. Therefore e is solved for, K e = r, to a
 /// tenth of r.
+///
+/// # Errors
+/// A solve that does not converge, or fails a check. The error names another tolerance only if the stiffness was found with it.
 pub fn relaxed_stiffness(
+    network: &SpringNetwork,
+    tolerance: f64,
+    max_iterations: u32,
+) -> Result<Option<NetworkStiffness>, MicroError> {
+    let is_enough =
+        |other: &f64| TOLERANCES.contains(other) && checked(network, *other, max_iterations).is_ok();
+    checked(network, tolerance, max_iterations).map_err(|error| match error {
+        MicroError::NotConverged { residual, tolerance, iterations, .. } => {
+            // With a margin, because another tolerance takes other rounds.
+            let sufficient = Some(one_digit(2.0 * residual)).filter(is_enough);
+            MicroError::NotConverged { residual, tolerance, iterations, sufficient }
+        }
+        MicroError::Inconsistent { relative, limit, .. } => {
+            let sufficient = Some(one_digit(LOWERED * tolerance)).filter(is_enough);
+            MicroError::Inconsistent { relative, limit, sufficient }
+        }
+        other => other,
+    })
+}
+
+/// The next larger number with one digit.
+fn one_digit(value: f64) -> f64 {
+    let unit = value.log10().floor();
+    format!("{}e{unit}", (value / 10f64.powf(unit)).ceil()).parse().unwrap_or(value)
+}
+
+/// The stiffness at one tolerance.
+fn checked(
     network: &SpringNetwork,
     tolerance: f64,
     max_iterations: u32,
@@ -68,25 +110,35 @@ pub fn relaxed_stiffness(
     // The difference of the two is xᵀr/V; x grows with the softest modes, which takes the factor.
     let limit = 1e3 * tolerance;
     let at = |tolerance: f64| {
-        let solution = solver.solve(&loads, &norms, tolerance, max_iterations)?;
+        let solution = solver.closest(&loads, &norms, tolerance, max_iterations)?;
         let (relaxed, by_stress) = network.stiffness_with(&solution.motion);
         let relative = (relaxed - by_stress).amax() / scale;
         Ok::<_, MicroError>((solution, relaxed, relative))
     };
     let mut found = at(tolerance)?;
-    if found.1.amax() <= FLOPPY.max(tolerance) * scale {
+    let Solution { residual, iterations, .. } = found.0;
+    let is_solved = residual <= tolerance;
+    let least = if is_solved { FLOPPY.max(tolerance) } else { FLOPPY_BOUND };
+    if (is_solved || !network.prestressed()) && found.1.amax() <= least * scale {
         return Ok(None);
+    }
+    if !is_solved {
+        return Err(MicroError::NotConverged { residual, tolerance, iterations, sufficient: None });
     }
     if found.2 > limit {
         // Near the isostatic point the modes are softer than that. A finer solve may be below the rounding of double
         // precision: then the difference stays, and is stated.
-        let finer: Result<_, MicroError> = at((0.1 * tolerance * limit / found.2).max(FINEST));
-        found = finer.unwrap_or(found);
+        let finest = (0.1 * tolerance * limit / found.2).max(FINEST);
+        if let Ok(finer) = at(finest)
+            && finer.0.residual <= finest
+        {
+            found = finer;
+        }
     }
     let (solution, relaxed, relative) = found;
     let limit = limit.max(COARSEST);
     if relative.is_nan() || relative > limit {
-        return Err(MicroError::Inconsistent { relative, limit });
+        return Err(MicroError::Inconsistent { relative, limit, sufficient: None });
     }
     let uniform_rotation = uniform_rotation_stiffness(network, &affine);
     let bounds =

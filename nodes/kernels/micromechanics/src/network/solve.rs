@@ -7,7 +7,8 @@
 //! so that neither the precision of a round nor its recurrences limit the result. Single precision halves the
 //! memory traffic and doubles the work per instruction; double precision follows where it no longer helps.
 //! If a round is slow, the softest motions of a few grains are left out of the iterations, and balanced exactly before and
-//! after each round ([`super::soft_motions`]).
+//! after each round ([`super::soft_motions`]). If they are so soft that rounding makes the rest indefinite, the iterations take them
+//! back, in double precision.
 //! All operations run in a fixed order on one thread: the same input gives the same bits.
 
 use super::conjugate_gradient::{Descent, Goal, Precision};
@@ -36,6 +37,9 @@ const WITHOUT_SOFT: u32 = 100;
 /// Maximum number of iterations of one round in single precision. A network that needs more is so close to a
 /// mechanism that rounding errors dominate.
 const SINGLE_ROUND: u32 = 500;
+
+/// Growth of a squared residual in double precision that no network causes whose stiffness double precision resolves.
+const GROWTH: f64 = 1e12;
 
 /// Negative eigenvalues of a block up to this fraction of its largest one are rounding.
 const ROUNDING: f64 = 1e-12;
@@ -87,6 +91,23 @@ impl<'a> Solver<'a> {
         tolerance: f64,
         max_iterations: u32,
     ) -> Result<Solution<L>, MicroError> {
+        let solution = self.closest(load, scale, tolerance, max_iterations)?;
+        let Solution { residual, iterations, .. } = solution;
+        if residual <= tolerance {
+            Ok(solution)
+        } else {
+            Err(MicroError::NotConverged { residual, tolerance, iterations, sufficient: None })
+        }
+    }
+
+    /// Returns the closest solution found, whatever its residual is; arguments and other errors as of [`solve()`].
+    pub(super) fn closest<const L: usize>(
+        &self,
+        load: &[GrainDofs<L>],
+        scale: &[f64; L],
+        tolerance: f64,
+        max_iterations: u32,
+    ) -> Result<Solution<L>, MicroError> {
         const { assert!(L <= WIDTH) }
         let mut refinement = Refinement::new(self.network, load, scale, tolerance, max_iterations)?;
         if self.network.prestressed() {
@@ -94,7 +115,8 @@ impl<'a> Solver<'a> {
         } else {
             refinement.solve::<false>(self)?;
         }
-        refinement.solution()
+        let Refinement { motion, residual, iterations, .. } = refinement;
+        Ok(Solution { motion, residual, iterations })
     }
 }
 
@@ -185,11 +207,19 @@ impl<'a, const L: usize> Refinement<'a, L> {
             return Ok(());
         }
         self.soft = solver.soft.get_or_init(|| soft_motions(network));
+        let before_soft = self.motion.clone();
         let single = single.without(self.soft);
         if !self.rounds(network, &mut Descent::new(&single), SINGLE, SINGLE_ROUND) {
             let double = Sweeps::<f64, G>::new(network).without(self.soft);
             let mut descent = Descent::new(&double);
             self.rounds(network, &mut descent, DOUBLE, u32::MAX);
+            if descent.lost_after.is_some() {
+                // Motions so soft that rounding gives them work in common are better left to the iterations.
+                (self.soft, self.motion) = (&[], before_soft);
+                self.renew(network);
+                let whole = Sweeps::<f64, G>::new(network);
+                self.rounds(network, &mut Descent::new(&whole), DOUBLE, u32::MAX);
+            }
             let solved = self.residual <= self.tolerance;
             if descent.unstable && !solved {
                 return Err(MicroError::Unstable { residual: self.residual });
@@ -207,16 +237,6 @@ impl<'a, const L: usize> Refinement<'a, L> {
     /// True if more iterations are needed and allowed.
     fn goes_on(&self) -> bool {
         self.residual > self.tolerance && self.iterations < self.max_iterations
-    }
-
-    /// The solution, if it has converged.
-    fn solution(self) -> Result<Solution<L>, MicroError> {
-        let Self { motion, residual, tolerance, iterations, .. } = self;
-        if residual <= tolerance {
-            Ok(Solution { motion, residual, iterations })
-        } else {
-            Err(MicroError::NotConverged { residual, tolerance, iterations })
-        }
     }
 
     /// Rounds of conjugate gradients, as long as they help. Each reduces the residual by at most `reach` in
@@ -246,6 +266,24 @@ impl<'a, const L: usize> Refinement<'a, L> {
         true
     }
 
+    /// Residuals of norm 1 in the order of the sweeps: the start of a descent.
+    fn fill<T: Precision, const G: bool>(
+        &self,
+        descent: &mut Descent<T, G>,
+        squares: &[f64; WIDTH],
+        norms: &[f64; WIDTH],
+    ) {
+        for (at, grain) in descent.sweeps.order.iter().enumerate() {
+            let (load, image) = (&self.load[*grain as usize], &self.image[*grain as usize]);
+            for k in 0..6 {
+                for l in 0..L {
+                    let left = (load[k][l] - image[k][l]) / norms[l];
+                    descent.rest[at][k][l] = if squares[l] > 0.0 { T::of(left) } else { T::ZERO };
+                }
+            }
+        }
+    }
+
     /// One round, with the number of its iterations.
     fn round<T: Precision, const G: bool>(
         &mut self,
@@ -271,17 +309,16 @@ impl<'a, const L: usize> Refinement<'a, L> {
                 targets[l] = (reduction * self.residual * self.scale[l] / norms[l]).powi(2);
             }
         }
-        for (at, grain) in sweeps.order.iter().enumerate() {
-            let (load, image) = (&self.load[*grain as usize], &self.image[*grain as usize]);
-            for k in 0..6 {
-                for l in 0..L {
-                    let left = (load[k][l] - image[k][l]) / norms[l];
-                    descent.rest[at][k][l] = if squares[l] > 0.0 { T::of(left) } else { T::ZERO };
-                }
-            }
+        self.fill(descent, &squares, &norms);
+        let limit = most.min(self.max_iterations.saturating_sub(self.iterations));
+        // In single precision a round that loses its way is discarded.
+        let growth = (reach == DOUBLE && !G).then_some(GROWTH);
+        let mut iterations = T::run(descent, &Goal { squares, targets, limit, growth });
+        if let Some(limit) = descent.lost_after.filter(|_| self.soft.is_empty()) {
+            // Rounding has put a motion without resistance into a column: back to where that began.
+            self.fill(descent, &squares, &norms);
+            iterations += T::run(descent, &Goal { squares, targets, limit, growth: None });
         }
-        let limit = most.min(self.max_iterations - self.iterations);
-        let iterations = T::run(descent, &Goal { squares, targets, limit });
         self.iterations += iterations;
         let before: Vec<[f64; L]> = self.soft.iter().map(|s| shares(&s.force, &self.motion)).collect();
         for (at, grain) in sweeps.order.iter().enumerate() {

@@ -16,7 +16,7 @@ use super::relaxation::Relaxation;
 use super::settings::StrainProbe;
 use crate::error::ProbeError;
 use grainlab_core::contact::TangentialLaw;
-use grainlab_core::results::NotJammed;
+use grainlab_core::results::NoStiffness;
 use grainlab_core::{Packing, Stiffness, Vec3, backbone, min_contacts};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
 
@@ -109,13 +109,13 @@ pub fn strain_probe(packing: &Packing, settings: &StrainProbe) -> Result<StrainP
 fn strain_load(packing: &Packing, settings: &StrainProbe) -> Result<f64, ProbeError> {
     let grains = packing.grains();
     if packing.contacts.is_empty() {
-        return Err(NotJammed::NoContacts { grains }.into());
+        return Err(NoStiffness::NoContacts { grains }.into());
     }
     let friction = settings.friction_of(packing);
     let needed = min_contacts(friction);
     let contacts = packing.contacts.iter().map(|c| [c.i, c.j]).collect();
     if backbone(grains, contacts, needed).iter().all(|p| !p) {
-        return Err(NotJammed::OnlyRattlers { grains, needed }.into());
+        return Err(NoStiffness::OnlyRattlers { grains, needed }.into());
     }
     let (mut change, mut force) = (0.0, 0.0);
     for c in &packing.contacts {

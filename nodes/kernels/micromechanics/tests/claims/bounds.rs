@@ -11,6 +11,8 @@ use grainlab_micromechanics::network::{
     SpringNetwork, Springs, relaxed_stiffness, uniform_rotation_stiffness,
 };
 use grainlab_micromechanics::{MicroError, PackingView, Settings, analyze};
+use grainlab_testkit::Random;
+use grainlab_testkit::packings::FACE_CENTRED;
 
 const D: f64 = 2.0e-4;
 
@@ -109,8 +111,7 @@ fn prestress_takes_the_normal_force_off_the_shear_modulus_of_a_lattice() {
 fn prestress_is_a_negative_tangential_spring_of_a_smooth_lattice() {
     let d = D * (1.0 - 2e-2);
     let edge = d * 2f64.sqrt();
-    let sites = [[0.0, 0.0, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5], [0.5, 0.5, 0.0]];
-    let positions = sites.iter().map(|s| Vec3::from(*s) * edge).collect();
+    let positions = FACE_CENTRED.map(|s| Vec3::from(s) * edge).to_vec();
     let p = packing(Cell::cube(edge).unwrap(), positions, 0.5 * D, 0.0, None);
     assert_eq!(p.contacts.len(), 24);
     let (k, f) = (p.contact_stiffness(&p.contacts[0]).0, p.contacts[0].normal_force / d);
@@ -167,11 +168,11 @@ fn a_prestressed_network_balances_its_loads() {
 /// number.
 #[test]
 fn a_chain_that_buckles_is_an_error_by_name() {
-    let mut dice = crate::samples::Dice(47);
+    let mut dice = Random::new(47);
     let (grains, edge) = (8, 0.98 * D);
     let cell = Cell::new(Mat3::from_diagonal(&Vec3::new(edge * grains as f64, 5.0 * D, 5.0 * D))).unwrap();
-    let place = |g: usize, dice: &mut crate::samples::Dice| {
-        Vec3::new(edge * g as f64, 1e-2 * D * dice.next(), 1e-2 * D * dice.next())
+    let place = |g: usize, dice: &mut Random| {
+        Vec3::new(edge * g as f64, 1e-2 * D * dice.unit(), 1e-2 * D * dice.unit())
     };
     let positions = (0..grains).map(|g| place(g, &mut dice)).collect();
     // With friction a grain with two contacts is not a rattler, and prestress keeps it.

@@ -1,11 +1,12 @@
 //! Contacts by orientation, A(d) and g fitted, fourth-order fabric, and the axis with its noise.
 
 use crate::golden::reference;
-use crate::samples::{Dice, Pair, drawn, eq6, normal, packing, pairs, random, spread, turned};
+use crate::samples::{Pair, drawn, eq6, packing, pairs, random, spread, turned};
 use grainlab_core::results::{ContactStatistics, Fabric, StressDecomposition};
 use grainlab_core::{Cell, Mat3, Packing, SymTensor, Vec3};
 use grainlab_micromechanics::PackingView;
 use grainlab_micromechanics::structure::{contact_statistics, fabric, orientation_fit, stress_decomposition};
+use grainlab_testkit::Random;
 use nalgebra::Rotation3;
 
 fn along_z(p: &Packing) -> Fabric {
@@ -27,7 +28,7 @@ fn moments(values: &[f64]) -> (f64, f64) {
 #[test]
 fn contacts_drawn_from_eq_6_give_back_eps_with_an_honest_standard_error() {
     for eps in [-0.3, 0.0, 0.1, 0.6] {
-        let mut dice = Dice(51);
+        let mut dice = Random::new(51);
         let (mut pulls, mut chi2) = (Vec::new(), Vec::new());
         for _ in 0..400 {
             let directions = drawn(&mut dice, 1000, eq6(eps));
@@ -51,7 +52,7 @@ fn contacts_drawn_from_eq_6_give_back_eps_with_an_honest_standard_error() {
 #[test]
 fn chi_squared_detects_a_distribution_that_eq_6_does_not_describe() {
     let fourth = |x: f64| x + 0.125 * (7.0 * x.powi(5) - 10.0 * x.powi(3) + 3.0 * x);
-    let directions = drawn(&mut Dice(52), 2000, fourth);
+    let directions = drawn(&mut Random::new(52), 2000, fourth);
     let fit = orientation_fit(directions.iter().map(|n| n.z)).unwrap();
     assert!(fit.chi2_per_dof > 5.0 && fit.eps.abs() < 4.0 * fit.eps_stddev, "{fit:?}");
 }
@@ -91,13 +92,13 @@ fn bins_are_of_equal_solid_angle_and_hold_the_overlaps_of_their_contacts() {
 #[test]
 fn scattered_overlaps_give_back_g_with_an_honest_standard_error() {
     for g in [-0.1, 0.03] {
-        let mut dice = Dice(53);
+        let mut dice = Random::new(53);
         let pulls: Vec<f64> = (0..300)
             .map(|_| {
                 let contacts: Vec<Pair> = drawn(&mut dice, 500, eq6(0.1))
                     .into_iter()
                     .map(|n| {
-                        let root = 1e-4 * (1.0 + g - 3.0 * g * n.z * n.z + 0.2 * normal(&mut dice));
+                        let root = 1e-4 * (1.0 + g - 3.0 * g * n.z * n.z + 0.2 * dice.normal());
                         Pair { overlap: root.max(1e-6).powi(2), ..Pair::along(n) }
                     })
                     .collect();
@@ -157,7 +158,7 @@ fn magnitude_of_the_fourth_order_is_that_of_its_p4_about_any_axis() {
 /// none.
 #[test]
 fn the_noise_of_independent_contacts_is_found_and_no_axis_in_it() {
-    let mut dice = Dice(55);
+    let mut dice = Random::new(55);
     let (mut noise, mut pulls, mut alarms) = (Vec::new(), Vec::new(), 0);
     for seed in 0..200 {
         let f = along_z(&of_directions(&drawn(&mut dice, 800, eq6(0.0)), seed));
@@ -178,10 +179,10 @@ fn the_noise_of_independent_contacts_is_found_and_no_axis_in_it() {
 #[test]
 fn an_axis_is_found_where_there_is_one_and_its_angle_is_honest() {
     for eps in [0.4, -0.4] {
-        let mut dice = Dice(56);
+        let mut dice = Random::new(56);
         let (mut square, mut claimed) = (0.0, 0.0);
         for seed in 0..100 {
-            let r = Rotation3::new(Vec3::from_fn(|_, _| 3.0 * normal(&mut dice)));
+            let r = Rotation3::new(Vec3::from_fn(|_, _| 3.0 * dice.normal()));
             let directions: Vec<Vec3> = drawn(&mut dice, 800, eq6(eps)).iter().map(|n| r * n).collect();
             let f = along_z(&of_directions(&directions, seed));
             let a = f.principal_axis;
@@ -201,12 +202,12 @@ fn an_axis_is_found_where_there_is_one_and_its_angle_is_honest() {
 /// Three different eigenvalues with the middle one at the mean: two axes are equally distinct.
 #[test]
 fn of_two_axes_that_stand_out_alike_neither_is_chosen() {
-    let mut dice = Dice(57);
+    let mut dice = Random::new(57);
     let mut directions = Vec::new();
     while directions.len() < 2000 {
         let n = drawn(&mut dice, 1, eq6(0.0))[0];
         // Density 1 + 0.6 (z² − x²).
-        if 1.6 * dice.next() < 1.0 + 0.6 * (n.z * n.z - n.x * n.x) {
+        if 1.6 * dice.unit() < 1.0 + 0.6 * (n.z * n.z - n.x * n.x) {
             directions.push(n);
         }
     }
@@ -239,9 +240,9 @@ fn lattices_and_handfuls_of_contacts_have_no_axis_to_trust() {
 #[test]
 fn turning_packing_and_axis_changes_no_number() {
     let mut p = random(120, 1.15, 58);
-    let mut dice = Dice(58);
+    let mut dice = Random::new(58);
     for c in &mut p.contacts {
-        let any = Vec3::from_fn(|_, _| dice.next() - 0.5);
+        let any = Vec3::from_fn(|_, _| dice.unit() - 0.5);
         c.tangential_force = c.normal.cross(&any) * 0.3 * c.normal_force;
     }
     let r = Rotation3::from_euler_angles(0.5, 0.8, -0.3);

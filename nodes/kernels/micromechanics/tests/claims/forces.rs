@@ -1,11 +1,12 @@
 //! Stress by kind of force and by network, the stress-force-fabric relation, distributions of forces.
 
 use crate::golden::reference;
-use crate::samples::{Dice, Pair, drawn, eq6, packing, pairs, random, spread};
+use crate::samples::{Pair, drawn, eq6, packing, pairs, random, spread};
 use grainlab_core::results::{ContactStatistics, Fabric, StressDecomposition};
 use grainlab_core::{Cell, Mat3, Packing, SymTensor, Vec3};
 use grainlab_micromechanics::PackingView;
 use grainlab_micromechanics::structure::{contact_statistics, fabric, stress_decomposition};
+use grainlab_testkit::Random;
 
 /// All measurements without a stiffness, about z.
 struct Structure {
@@ -30,8 +31,8 @@ fn difference(a: &SymTensor, b: &SymTensor) -> f64 {
 }
 
 /// Traceless and symmetric, with entries of about `scale`, in a general direction.
-fn tilted(dice: &mut Dice, scale: f64) -> SymTensor {
-    SymTensor::from_voigt(std::array::from_fn(|_| (dice.next() - 0.5) * scale)).deviator()
+fn tilted(dice: &mut Random, scale: f64) -> SymTensor {
+    SymTensor::from_voigt(std::array::from_fn(|_| (dice.unit() - 0.5) * scale)).deviator()
 }
 
 fn quadratic(a: &SymTensor, n: &Vec3) -> f64 {
@@ -40,9 +41,9 @@ fn quadratic(a: &SymTensor, n: &Vec3) -> f64 {
 
 /// `random` with tangential forces of half the normal ones, across the normal.
 fn rough(seed: u64) -> Packing {
-    let (mut p, mut dice) = (random(60, 1.15, seed), Dice(seed));
+    let (mut p, mut dice) = (random(60, 1.15, seed), Random::new(seed));
     for c in &mut p.contacts {
-        let any = Vec3::from_fn(|_, _| dice.next() - 0.5);
+        let any = Vec3::from_fn(|_, _| dice.unit() - 0.5);
         c.tangential_force = c.normal.cross(&any).normalize() * 0.5 * c.normal_force;
     }
     p
@@ -85,7 +86,7 @@ fn kinds_of_force_and_networks_add_up_to_the_stress() {
 fn anisotropies_are_found_and_predict_the_deviatoric_stress_to_first_order() {
     let mut errors = Vec::new();
     for scale in [0.08, 0.04] {
-        let mut dice = Dice(41);
+        let mut dice = Random::new(41);
         let [a_n, a_l, a_t] = [0; 3].map(|_| tilted(&mut dice, scale));
         let eps = scale / 3.0;
         let contacts: Vec<Pair> = spread(40_000, eq6(eps))
@@ -117,12 +118,12 @@ fn anisotropies_are_found_and_predict_the_deviatoric_stress_to_first_order() {
 /// over each direction.
 #[test]
 fn sizes_from_one_to_five_leave_the_relation_alone() {
-    let mut dice = Dice(43);
+    let mut dice = Random::new(43);
     let (a_n, eps) = (tilted(&mut dice, 0.3), 0.08);
     let contacts: Vec<Pair> = drawn(&mut dice, 60_000, eq6(eps))
         .into_iter()
         .map(|n| {
-            let size = 1.0 + 4.0 * dice.next();
+            let size = 1.0 + 4.0 * dice.unit();
             Pair {
                 branch: 1e-4 * size,
                 normal_force: size * size * (1.0 + quadratic(&a_n, &n)),
@@ -174,10 +175,10 @@ fn four_contacts_have_the_moments_and_networks_of_their_forces() {
 
 #[test]
 fn exponential_forces_have_the_moments_of_an_exponential() {
-    let mut dice = Dice(44);
+    let mut dice = Random::new(44);
     let contacts: Vec<Pair> = drawn(&mut dice, 100_000, eq6(0.0))
         .into_iter()
-        .map(|n| Pair { normal_force: -(1.0 - dice.next()).ln(), ..Pair::along(n) })
+        .map(|n| Pair { normal_force: -(1.0 - dice.unit()).ln(), ..Pair::along(n) })
         .collect();
     let s = structure(&pairs(&contacts, 1));
     let f = s.contacts.forces.unwrap();

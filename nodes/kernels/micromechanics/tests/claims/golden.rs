@@ -1,15 +1,12 @@
 //! The packing of 500 grains from LAMMPS, and its sidecar.
 
-use crate::golden_packing::read;
 use grainlab_core::Packing;
+use grainlab_testkit::golden;
 use nalgebra::Matrix6;
 use serde_json::Value;
-use std::fs;
-
-const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../tests/golden/reference");
 
 pub(crate) fn sidecar() -> Value {
-    serde_json::from_str(&fs::read_to_string(format!("{FOLDER}/ref_packing_500.json")).unwrap()).unwrap()
+    golden::json("reference/ref_packing_500.json")
 }
 
 pub(crate) fn matrix(value: &Value) -> Matrix6<f64> {
@@ -18,7 +15,7 @@ pub(crate) fn matrix(value: &Value) -> Matrix6<f64> {
 
 /// The reference packing, each contact with i ≤ j, in order.
 pub(crate) fn reference() -> Packing {
-    let mut p = read(FOLDER, "ref_packing_500");
+    let mut p = golden::packing("reference/ref_packing_500");
     p.contacts = p.contacts.into_iter().map(|c| c.named(c.i, c.j, c.image)).collect();
     p.contacts.sort_by_key(|c| (c.i, c.j, c.image));
     p.validated().unwrap()

@@ -1,6 +1,6 @@
 //! Invariances, and motions without energy.
 
-use crate::samples::{random, repeated, turned};
+use crate::samples::{random, turned};
 use grainlab_core::Vec3;
 use grainlab_micromechanics::network::{GrainDofs, SpringNetwork, Springs, relaxed_stiffness};
 use grainlab_micromechanics::{PackingView, Settings, analyze};
@@ -26,7 +26,7 @@ fn periodic_copies_change_nothing() {
     let settings = Settings::default();
     let one = analyze(&p, &settings).unwrap();
     for copies in [2, 3] {
-        let many = analyze(&repeated(&p, copies), &settings).unwrap();
+        let many = analyze(&p.repeated(copies).unwrap(), &settings).unwrap();
         let (c, d) = (one.report.stiffness().unwrap(), many.report.stiffness().unwrap());
         let error = (c.tensor.0 - d.tensor.0).amax() / c.tensor.0.amax();
         assert!(error < 1e-8, "{copies} copies: {error:e}");

@@ -6,8 +6,6 @@ mod directions;
 mod factorised;
 mod forces;
 mod golden;
-#[path = "../../../acoustics/tests/claims/golden_packing.rs"]
-mod golden_packing;
 mod hard;
 mod invariance;
 mod lattices;
@@ -18,5 +16,4 @@ mod sizes;
 mod springs;
 mod stated_errors;
 mod structure;
-mod touching_itself;
 mod warnings;

@@ -1,7 +1,8 @@
 //! Packings for the tests.
 
 use grainlab_core::Contact;
-use grainlab_core::{Cell, Mat3, Material, Packing, Vec3, contact_search};
+use grainlab_core::{Cell, Mat3, Material, OVERLAP_LIMIT, Packing, Vec3, contact_search};
+use grainlab_testkit::Random;
 
 /// A packing of spheres of one radius at `positions`, with all contacts in `cell` (images up to one cell
 /// away). With `uniform`, every contact has that overlap, so that all springs are equal.
@@ -33,6 +34,15 @@ pub(crate) fn packing_of_sizes(
         ..Packing::at_rest(cell, radii, positions)
     };
     packing.contacts = contact_search::of_packing(&packing).expect("grains apart");
+    // Grains at random overlap more than grains may: all springs are softened alike.
+    let deepest = packing.overlaps().map_or(0.0, |overlaps| overlaps.largest);
+    let share = if deepest > OVERLAP_LIMIT { 0.9 * OVERLAP_LIMIT / deepest } else { 1.0 };
+    for k in 0..packing.contacts.len() {
+        let r_eff = packing.effective_radius(&packing.contacts[k]);
+        let c = &mut packing.contacts[k];
+        c.overlap *= share;
+        c.normal_force = Material::GLASS.normal_force(r_eff, c.overlap);
+    }
     if let Some(overlap) = uniform {
         for k in 0..packing.contacts.len() {
             let r_eff = packing.effective_radius(&packing.contacts[k]);
@@ -43,26 +53,16 @@ pub(crate) fn packing_of_sizes(
     packing.validated().expect("a sample is a packing")
 }
 
-/// Numbers in [0, 1) from a 64-bit linear congruential generator.
-pub(crate) struct Dice(pub(crate) u64);
-
-impl Dice {
-    pub(crate) fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
-
 /// `grains` spheres placed at random in a cube, no closer than 0.8 diameters, then enlarged by `swell`: not
 /// in equilibrium, but a network with every kind of grain, from no contact to a dozen.
 pub(crate) fn random(grains: usize, swell: f64, seed: u64) -> Packing {
-    let mut dice = Dice(seed);
+    let mut dice = Random::new(seed);
     let diameter = 2.0e-4;
     let edge = diameter * (grains as f64 * std::f64::consts::FRAC_PI_6 / 0.45).cbrt();
     let cell = Cell::new(Mat3::new(edge, 0.2 * edge, 0.0, 0.0, edge, -0.1 * edge, 0.0, 0.0, edge)).unwrap();
     let mut positions: Vec<Vec3> = Vec::new();
     while positions.len() < grains {
-        let x = cell.matrix() * Vec3::new(dice.next(), dice.next(), dice.next());
+        let x = cell.matrix() * Vec3::new(dice.unit(), dice.unit(), dice.unit());
         let clear = positions.iter().all(|y| {
             let mut s = cell.fractional(&(x - y));
             s.apply(|v| *v -= v.round());
@@ -87,33 +87,6 @@ pub(crate) fn thinned(p: &Packing, coordination: f64) -> Packing {
     out.validated().expect("fewer contacts are a packing, too")
 }
 
-/// `copies` of the packing side by side along edge vector 0.
-pub(crate) fn repeated(p: &Packing, copies: i32) -> Packing {
-    let n = p.grains();
-    let edge: Vec3 = p.cell.matrix().column(0).into_owned();
-    let mut matrix = *p.cell.matrix();
-    matrix.set_column(0, &(edge * f64::from(copies)));
-    let mut out = Packing { cell: Cell::new(matrix).unwrap(), contacts: Vec::new(), ..p.clone() };
-    for copy in 1..copies {
-        out.positions.extend(p.positions.iter().map(|x| x + edge * f64::from(copy)));
-        out.velocities.extend(&p.velocities);
-        out.spins.extend(&p.spins);
-        out.radii.extend(&p.radii);
-    }
-    out.ids = (1..=(n as i32 * copies) as u32).collect();
-    for c in &p.contacts {
-        for copy in 0..copies {
-            let reached = copy + i32::from(c.image[0]);
-            let i = c.i + (copy as usize * n) as u32;
-            let j = c.j + (reached.rem_euclid(copies) as usize * n) as u32;
-            let image = [reached.div_euclid(copies) as i8, c.image[1], c.image[2]];
-            out.contacts.push(c.named(i, j, image));
-        }
-    }
-    out.contacts.sort_by_key(|c| (c.i, c.j, c.image));
-    out.validated().expect("copies of a packing are a packing")
-}
-
 /// The rotated packing.
 pub(crate) fn turned(p: &Packing, rotation: &Mat3) -> Packing {
     let mut out = p.clone();
@@ -124,11 +97,6 @@ pub(crate) fn turned(p: &Packing, rotation: &Mat3) -> Packing {
         c.tangential_force = rotation * c.tangential_force;
     }
     out.validated().expect("a turned packing is a packing")
-}
-
-/// Normally distributed, mean 0, variance 1.
-pub(crate) fn normal(dice: &mut Dice) -> f64 {
-    (-2.0 * (1.0 - dice.next()).ln()).sqrt() * (std::f64::consts::TAU * dice.next()).cos()
 }
 
 /// A contact between its own two grains.
@@ -152,11 +120,11 @@ impl Pair {
 /// Contacts of any directions and forces, each between two grains without other contacts, placed at random in
 /// a cube of 1 cm³: for measurements of structure, not mechanically stable.
 pub(crate) fn pairs(contacts: &[Pair], seed: u64) -> Packing {
-    let mut dice = Dice(seed);
+    let mut dice = Random::new(seed);
     let cell = Cell::cube(0.01).unwrap();
     let mut p = Packing { friction: 0.5, ..Packing::at_rest(cell, Vec::new(), Vec::new()) };
     for (k, pair) in contacts.iter().enumerate() {
-        let place = Vec3::from_fn(|_, _| 0.01 * dice.next());
+        let place = Vec3::from_fn(|_, _| 0.01 * dice.unit());
         for (half, offset) in [0.0, pair.branch].into_iter().enumerate() {
             p.ids.push((2 * k + half + 1) as u32);
             p.radii.push(0.5 * (pair.branch + pair.overlap));
@@ -172,11 +140,11 @@ pub(crate) fn pairs(contacts: &[Pair], seed: u64) -> Packing {
 }
 
 /// Directions about z whose cosine x has the cumulative distribution `cumulative` on [0, 1], drawn from `dice`.
-pub(crate) fn drawn(dice: &mut Dice, count: usize, cumulative: impl Fn(f64) -> f64) -> Vec<Vec3> {
+pub(crate) fn drawn(dice: &mut Random, count: usize, cumulative: impl Fn(f64) -> f64) -> Vec<Vec3> {
     (0..count)
         .map(|_| {
-            let side = if dice.next() < 0.5 { -1.0 } else { 1.0 };
-            direction(inverse(&cumulative, dice.next()) * side, dice.next())
+            let side = if dice.unit() < 0.5 { -1.0 } else { 1.0 };
+            direction(inverse(&cumulative, dice.unit()) * side, dice.unit())
         })
         .collect()
 }

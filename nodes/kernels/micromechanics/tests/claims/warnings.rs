@@ -1,11 +1,11 @@
 //! Warnings about packings and their measurement.
 
 use crate::golden::reference;
-use crate::touching_itself::{OVERLAP, lattice};
 use grainlab_core::contact::RollingResistance;
-use grainlab_core::results::{PackingReport, warnings, yields};
-use grainlab_core::{Cell, Packing, Vec3};
+use grainlab_core::results::{PackingReport, geometry_warnings, warnings, yields};
+use grainlab_core::{Cell, Packing, SymmetryClass, Vec3, contact_search};
 use grainlab_micromechanics::{Settings, analyze};
+use grainlab_testkit::packings::{DIAMETER, FACE_CENTRED, OVERLAP, lattice};
 
 fn report(packing: &Packing) -> PackingReport {
     analyze(packing, &Settings::default()).unwrap().report
@@ -110,6 +110,38 @@ fn identical_copies_of_a_packing_are_reported_and_crystals_and_packings_at_rest_
     assert!(!found(&lattice(OVERLAP).repeated(3).unwrap()).contains("identical copies"));
 }
 
+/// Reports with the fabric and the symmetry of h03, a packing that was sheared in xz: 5.5 standard deviations.
+#[test]
+fn an_axis_other_than_the_one_used_is_named_if_the_anisotropy_is_beyond_its_noise() {
+    let packing = reference();
+    let report = report(&packing);
+    let found = |eps: f64, about: f64, class: SymmetryClass| {
+        let mut report = report.clone();
+        let symmetry = report.symmetry.as_mut().unwrap();
+        (symmetry.class, symmetry.axis) = (class, Vec3::new(0.6, 0.0, 0.8));
+        report.fabric.contact_anisotropy = about;
+        report.fabric.principal_axis.direction = Vec3::new(0.8, 0.0, 0.6);
+        report.fabric.principal_axis.contact_anisotropy = eps;
+        report.fabric.principal_axis.contact_anisotropy_stddev = Some(0.0126);
+        warnings(&packing, &report).into_iter().find(|w| w.contains("has its axis at"))
+    };
+    let axial = SymmetryClass::TransverselyIsotropic;
+    let text = found(-0.0814, 0.0123, axial).unwrap();
+    assert!(text.contains("(0.60, 0.00, 0.80), 37 degrees from the axis (0.00, 0.00, 1.00)"), "{text}");
+    assert!(text.contains("eps -0.081 +- 0.013") && text.contains("--axis 0.60,0.00,0.80"), "{text}");
+    let lower = found(-0.0814, 0.0123, SymmetryClass::Lower).unwrap();
+    assert!(lower.contains("--axis 0.80,0.00,0.60"), "{lower}");
+    for (eps, about, class) in [
+        // Contacts in all directions alike; a stiffness without an axis; an axis near the one used.
+        (0.03, 0.0, axial),
+        (-0.0814, 0.0123, SymmetryClass::Isotropic),
+        (0.0814, 0.079, axial),
+    ] {
+        assert_eq!(found(eps, about, class), None, "{eps} {about}");
+    }
+    assert!(!warnings(&packing, &report).iter().any(|w| w.contains("has its axis at")));
+}
+
 #[test]
 fn theta_below_its_bound_forces_out_of_balance_and_an_impossible_filling_are_reported() {
     let packing = lattice(OVERLAP);
@@ -126,4 +158,65 @@ fn theta_below_its_bound_forces_out_of_balance_and_an_impossible_filling_are_rep
             && found.contains("5.100: no grains fill a cell so far"),
         "{found}"
     );
+}
+
+/// Compressed by 3.5 % it fills as much of the cell as a crystal: its solid fraction does not tell.
+#[test]
+fn crystals_are_reported_by_their_structure_and_compressed_random_packings_are_not() {
+    let random = reference();
+    let mut compressed = random.clone();
+    compressed.radii.iter_mut().for_each(|r| *r *= 1.035);
+    compressed.contacts = contact_search::of_packing(&compressed).unwrap();
+    assert!(compressed.solid_fraction() > 0.67, "{}", compressed.solid_fraction());
+    let edge = 2f64.sqrt() * DIAMETER;
+    let sites = FACE_CENTRED.map(|s| Vec3::from(s) * edge).to_vec();
+    let crystal =
+        Packing::at_rest(Cell::cube(edge).unwrap(), vec![0.501 * DIAMETER; 4], sites).repeated(3).unwrap();
+    for (packing, is_crystal) in [(random, false), (compressed, false), (crystal, true)] {
+        let found = geometry_warnings(&packing).join("; ");
+        assert_eq!(found.contains("have the surroundings of a crystal"), is_crystal, "{found}");
+        // Grains of many sizes have no crystal that this could know.
+        let radii = packing.radii.iter().enumerate().map(|(k, r)| r * (1.0 - 0.4 * (k % 2) as f64)).collect();
+        let mixed = Packing { radii, contacts: Vec::new(), ..packing };
+        assert!(!geometry_warnings(&mixed).join("; ").contains("crystal"));
+    }
+}
+
+/// A cell of eight grains is so narrow that each neighbour of a grain is one on two sides.
+#[test]
+fn crystals_are_reported_also_if_simple_cubic_and_none_in_a_cell_of_few_grains() {
+    for (copies, is_crystal) in [(1, false), (2, false), (3, true), (5, true)] {
+        let found = geometry_warnings(&lattice(OVERLAP).repeated(copies).unwrap()).join("; ");
+        assert_eq!(
+            found.contains("100 % of the grains have the surroundings of a crystal"),
+            is_crystal,
+            "{found}"
+        );
+    }
+}
+
+#[test]
+fn overlaps_beyond_the_contact_law_and_planes_without_contacts_are_reported() {
+    let deep = changed(|p| *p = lattice(0.12 * DIAMETER));
+    assert!(deep.contains("overlap by more than 10 %") && deep.contains("there are no moduli"), "{deep}");
+    assert!(
+        changed(|p| *p = lattice(0.06 * DIAMETER)).contains("Hertz's law, which is for contacts far smaller")
+    );
+    let open = changed(|p| {
+        *p = lattice(OVERLAP).repeated(5).unwrap();
+        p.contacts.retain(|c| c.image[1] == 0);
+    });
+    assert!(open.contains("open across edge b of the cell"), "{open}");
+}
+
+/// What is said about a packing of a recording, whose report does not have its geometry.
+#[test]
+fn planes_without_contacts_and_deep_overlaps_are_among_the_warnings_about_geometry() {
+    let mut open = lattice(OVERLAP).repeated(5).unwrap();
+    open.contacts.retain(|c| c.image[1] == 0);
+    let deep = lattice(0.12 * DIAMETER);
+    for (packing, words) in [(open, "open across edge b"), (deep, "overlap by more than 10 %")] {
+        let found = geometry_warnings(&packing).join("; ");
+        assert!(found.contains(words), "{found}");
+    }
 }

@@ -64,7 +64,6 @@ impl Assembly {
         Ok(true)
     }
 
-    /// True if every part was received.
     pub(super) fn is_complete(&self) -> bool {
         self.next == self.shape.count
     }

@@ -20,12 +20,10 @@ const ATTEMPTS: u32 = 3;
 /// Minimum time between two credits in response to parts received before.
 const NOT_AGAIN: Duration = Duration::from_millis(10);
 
-/// The result of one received part.
 #[derive(Debug, Default)]
 pub(super) struct PartOutcome {
     /// The body, if this part completes it, after its sequence number among those that the writer sent in parts.
     pub(super) whole: Option<(i64, Vec<u8>)>,
-    /// The error, if the part or its body was refused.
     pub(super) fault: Option<PartError>,
     /// True for the first part of a body.
     pub(super) begins: bool,
@@ -91,7 +89,6 @@ impl Receiver {
         self.broadcast = Repetition::new(now);
     }
 
-    /// Processes one part.
     pub(super) fn receive(&mut self, now: Duration, from: Guid, part: &PackingChunk) -> PartOutcome {
         let shape = match Shape::checked(part) {
             Ok(shape) => shape,
@@ -136,13 +133,11 @@ impl Receiver {
         self.sources.values().map(|source| source.credit.due).min().unwrap_or(self.broadcast.due)
     }
 
-    /// True while the parts of a body are kept.
     #[cfg(test)]
     pub(super) fn keeps_parts(&self) -> bool {
         self.sources.values().any(|source| source.assembly.is_some())
     }
 
-    /// Removes writers that left.
     pub(super) fn forget_absent(&mut self, now: Duration, present: &[Guid]) {
         let stays = |id: &Guid, source: &Source| {
             present.contains(id) || now.saturating_sub(source.latest_part) < FORGET

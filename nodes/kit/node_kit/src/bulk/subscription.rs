@@ -32,7 +32,6 @@ pub struct BulkSubscription {
     part_topic: Topic,
     credits: Publisher<PackingCredit>,
     receiver: Receiver,
-    /// Received messages that were not taken yet.
     queue: VecDeque<Sample>,
     depth: usize,
     /// For each writer, the source time of the first part of the body in transit.
@@ -68,13 +67,6 @@ impl BulkSubscription {
             next_look: Duration::ZERO,
             overrun: 0,
         })
-    }
-
-    /// Ends the subscription, so that no writer waits for this reader.
-    pub fn close(self, bus: &mut dyn Bus) {
-        bus.withdraw(self.credits.id());
-        bus.unsubscribe(self.plain);
-        bus.unsubscribe(self.parts.id());
     }
 
     /// The next message, if there is one. Never waits.

@@ -3,9 +3,10 @@
 //! When a writer leaves, RustDDS drops the samples of a reliable reader that were received but not yet taken
 //! (it removes the record of which samples are complete). A node that computes for seconds would lose the
 //! last packing of a simulator that ended meanwhile. The background reader moves samples into the queues of
-//! this process as soon as the node has not used the bus for a while; it does nothing for a node with short
-//! steps.
+//! this process as soon as the node has not used the bus for a while, and follows the graph; it does nothing for a node with
+//! short steps.
 
+use super::graph::Follower;
 use super::inbox::Inbox;
 use crate::lock::lock;
 use mio::Waker;
@@ -35,7 +36,11 @@ pub(super) struct BackgroundReader {
 }
 
 impl BackgroundReader {
-    pub(super) fn spawn(inboxes: Inboxes, waker: Arc<Waker>) -> std::io::Result<Self> {
+    pub(super) fn spawn(
+        inboxes: Inboxes,
+        follower: Arc<Mutex<Follower>>,
+        waker: Arc<Waker>,
+    ) -> std::io::Result<Self> {
         let shared = Arc::new(Shared {
             start: Instant::now(),
             last_seen: AtomicU64::new(0),
@@ -45,7 +50,7 @@ impl BackgroundReader {
         let its = Arc::clone(&shared);
         let thread = std::thread::Builder::new()
             .name("bus reader".into())
-            .spawn(move || run(&its, &inboxes, &waker))?;
+            .spawn(move || run(&its, &inboxes, &follower, &waker))?;
         Ok(Self { shared, thread: Some(thread) })
     }
 
@@ -67,7 +72,7 @@ impl Drop for BackgroundReader {
     }
 }
 
-fn run(shared: &Shared, inboxes: &Inboxes, waker: &Waker) {
+fn run(shared: &Shared, inboxes: &Inboxes, follower: &Mutex<Follower>, waker: &Waker) {
     let mut stopped = lock(&shared.stopped);
     while !*stopped {
         stopped = shared.stop.wait_timeout(stopped, ABSENCE).unwrap_or_else(PoisonError::into_inner).0;
@@ -81,6 +86,7 @@ fn run(shared: &Shared, inboxes: &Inboxes, waker: &Waker) {
             // The node's next take returns the error of a failing reader.
             moved |= lock(inbox).collect().unwrap_or(false);
         }
+        moved |= lock(follower).follow();
         // The node may have begun to wait meanwhile: the reader is empty now, so wake it again.
         if moved && let Err(error) = waker.wake() {
             log::error!("cannot wake the node: {error}");

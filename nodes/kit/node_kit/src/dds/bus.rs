@@ -1,14 +1,15 @@
 //! The bus over DDS.
 
 use super::background_reader::{BackgroundReader, Inboxes};
-use super::direct::{self, Change, DdsTopic, Discovery, RawPublisher, RawSubscription};
+use super::direct::{self, DdsTopic, Discovery, RawPublisher, RawSubscription};
 use super::gate::Gate;
-use super::graph::Graph;
+use super::graph::{Follower, Graph};
 use super::handles::Handles;
 use super::inbox::Inbox;
-use super::network::Network;
+use super::network::{CROWDING_ADVICE, Network, crowding};
 use super::writer::Writer;
 use crate::admission::{Participant, Stranger};
+use crate::announced::Announced;
 use crate::bus::{Bus, Caller, PublisherId, SubscriptionId, Wake};
 use crate::bus_error::{BusError, create_error};
 use crate::demand::Demand;
@@ -19,7 +20,6 @@ use crate::offer::Offer;
 use crate::parameters::Parameters;
 use crate::sample::{Sample, SampleId};
 use crate::services::{ServiceThread, SimTime};
-use crate::wall_clock;
 use crate::watchdog::OpenParticipant;
 use grainlab_console::Signals;
 use grainlab_msgs::{Guid, Published, Received, Topic, TypeInfo};
@@ -44,6 +44,8 @@ struct Reader {
     topic: String,
     /// Type that its samples are decoded as.
     info: TypeInfo,
+    /// It asks for the messages that writers offered before they were matched.
+    latched: bool,
     /// A notification arrived, and the reader was not found empty since.
     ready: bool,
     /// That notification is still to be cleared.
@@ -78,10 +80,7 @@ pub struct DdsBus {
     poll: Poll,
     events: Events,
     topics: BTreeMap<String, DdsTopic>,
-    discovery: Discovery,
-    graph: Graph,
-    /// The graph changed, and no wait has returned it yet.
-    changed: bool,
+    follower: Arc<Mutex<Follower>>,
     /// Writers that were said to be refused, by subscription.
     refused: BTreeSet<(Guid, usize)>,
     gate: Arc<Gate>,
@@ -133,8 +132,9 @@ impl DdsBus {
         discovery.register(poll.registry(), STATUS).map_err(io)?;
         let inboxes = Inboxes::default();
         let waker = Arc::new(Waker::new(poll.registry(), WAKER).map_err(io)?);
-        let background_reader =
-            BackgroundReader::spawn(Arc::clone(&inboxes), Arc::clone(&waker)).map_err(io)?;
+        let follower = Arc::new(Mutex::new(Follower::new(discovery, Arc::clone(&gate), prefix)));
+        let shared = (Arc::clone(&inboxes), Arc::clone(&follower), Arc::clone(&waker));
+        let background_reader = BackgroundReader::spawn(shared.0, shared.1, shared.2).map_err(io)?;
         Ok(Self {
             services: None,
             declared,
@@ -150,9 +150,7 @@ impl DdsBus {
             poll,
             events: Events::with_capacity(64),
             topics: BTreeMap::new(),
-            discovery,
-            graph: Graph::new(prefix),
-            changed: false,
+            follower,
             refused: BTreeSet::new(),
             gate,
             node: Arc::new(Mutex::new(node)),
@@ -217,19 +215,9 @@ impl DdsBus {
         let inbox = Arc::new(Mutex::new(inbox));
         lock(&self.inboxes).push(Arc::clone(&inbox));
         let info = topic.info;
-        Ok(self.readers.add(Reader { inbox, guid, topic: resolved, info, ready: false, notified: false }))
-    }
-
-    /// Processes the events of discovery; true if something changed.
-    fn follow_graph(&mut self) -> bool {
-        let mut changed = false;
-        while let Some(change) = self.discovery.next() {
-            if let Change::ParticipantLost(participant) = &change {
-                self.gate.lost(participant);
-            }
-            changed |= self.graph.apply(change);
-        }
-        changed
+        let latched = demand.reliable && topic.qos.transient_local;
+        let reader = Reader { inbox, guid, topic: resolved, info, latched, ready: false, notified: false };
+        Ok(self.readers.add(reader))
     }
 
     /// Announces the endpoints made since the last call to the ROS graph, in one message.
@@ -267,7 +255,12 @@ impl DdsBus {
                 }
             }
         }
-        let changed = (status && self.follow_graph()) | std::mem::take(&mut self.changed);
+        let mut follower = lock(&self.follower);
+        if status {
+            follower.follow();
+        }
+        let changed = follower.take_changed();
+        drop(follower);
         if signal && self.signals.as_mut().is_some_and(Signals::drain) {
             return Some(Wake::Shutdown);
         }
@@ -321,10 +314,6 @@ impl Bus for DdsBus {
         lock(&self.inboxes).retain(|inbox| !Arc::ptr_eq(inbox, &reader.inbox));
         self.gate.remove_reader(reader.guid);
         self.unannounced = true;
-    }
-
-    fn withdraw(&mut self, publisher: PublisherId) {
-        self.unannounced |= self.writers.remove(publisher.0).is_some();
     }
 
     fn publish_about(
@@ -381,37 +370,48 @@ impl Bus for DdsBus {
     fn readers(&self, publisher: PublisherId) -> usize {
         self.writers
             .get(publisher.0)
-            .map_or(0, |w| self.graph.matches_of(w.id, |guid| self.gate.admits(guid)))
+            .map_or(0, |w| lock(&self.follower).graph.matches_of(w.id, |guid| self.gate.admits(guid)))
     }
 
     fn is_read(&self, publisher: PublisherId) -> bool {
-        self.writers.get(publisher.0).is_some_and(|w| self.graph.matches_of(w.id, |_| true) > 0)
+        self.writers
+            .get(publisher.0)
+            .is_some_and(|w| lock(&self.follower).graph.matches_of(w.id, |_| true) > 0)
+    }
+
+    fn unacknowledged(&self, publisher: PublisherId) -> u64 {
+        self.writers.get(publisher.0).map_or(0, |w| w.raw.unacknowledged())
+    }
+
+    fn is_known_to_readers(&self, publisher: PublisherId) -> bool {
+        self.writers.get(publisher.0).is_none_or(|w| w.raw.is_known_to_readers())
     }
 
     fn writers(&self, subscription: SubscriptionId) -> usize {
         let reader = self.subscribers.get(subscription.0).and_then(|s| self.readers.get(s.reader));
-        reader.map_or(0, |r| self.graph.matches_of(r.guid, |guid| self.counts(guid, &r.info)))
+        let graph = &lock(&self.follower).graph;
+        reader.map_or(0, |r| graph.matches_of(r.guid, |guid| self.counts(graph, guid, &r.info)))
     }
 
     fn foreign_writers(&self, topic: &Topic) -> Vec<Guid> {
-        self.writers_of(topic, |guid| self.counts(guid, &topic.info))
+        self.writers_of(topic, |graph, guid| self.counts(graph, guid, &topic.info))
     }
 
     fn misfits(&self, topic: &Topic) -> Vec<Participant> {
-        let misfits = |guid: &Guid| self.graph.misfit(guid, &topic.info).is_some();
+        let misfits = |graph: &Graph, guid: &Guid| graph.misfit(guid, &topic.info).is_some();
         self.writers_of(topic, misfits).iter().map(Guid::participant).collect()
     }
 
     fn strange_writers(&self, topic: &Topic) -> Vec<Guid> {
-        self.writers_of(topic, |guid| !self.gate.admits(guid))
+        self.writers_of(topic, |_, guid| !self.gate.admits(guid))
     }
 
     fn offers(&self) -> Vec<Offer> {
-        self.graph.offers(|guid| self.gate.admits(guid))
+        lock(&self.follower).graph.offers(|guid| self.gate.admits(guid))
     }
 
     fn strange_offers(&self) -> Vec<Offer> {
-        self.graph.offers(|guid| !self.gate.admits(guid))
+        lock(&self.follower).graph.offers(|guid| !self.gate.admits(guid))
     }
 
     fn count_published(&mut self, publisher: PublisherId, topic: &Topic) -> Result<(), BusError> {
@@ -432,6 +432,10 @@ impl Bus for DdsBus {
             Some(Received { topic: reader.topic.clone(), taken: s.taken, refused })
         };
         self.subscribers.values().filter_map(of).collect()
+    }
+
+    fn announced(&self, subscription: SubscriptionId) -> Vec<Announced> {
+        self.announced_to(subscription)
     }
 
     fn count_refused(&mut self, subscription: SubscriptionId) {
@@ -460,6 +464,10 @@ impl Bus for DdsBus {
         self.gate.describe(&writer.participant())
     }
 
+    fn crowding(&self) -> Option<String> {
+        crowding(&self.context).map(|sentence| format!("{sentence}: {CROWDING_ADVICE}"))
+    }
+
     fn flush(&mut self, timeout: Duration) -> bool {
         let deadline = Instant::now() + timeout;
         // DDS may match a reader of our own, too, which acknowledges only if multicast reaches it.
@@ -480,6 +488,6 @@ impl Bus for DdsBus {
     }
 
     fn wall_nanos(&self) -> u64 {
-        wall_clock::wall_nanos()
+        direct::wall_nanos()
     }
 }

@@ -17,6 +17,8 @@ use super::gate::Gate;
 use super::network::{Network, Reach};
 use crate::bus_error::{BusError, create_error};
 use crate::demand::Demand;
+use crate::free_domain::no_participant;
+use crate::identity::may_be_ours;
 use crate::offer::{Offer, user_data, wire_type};
 use crate::sample::{Sample, SampleId, SampleInfo};
 use grainlab_msgs::{Guid, Qos, Topic};
@@ -41,7 +43,6 @@ use std::sync::Arc;
 /// The module path under which RustDDS logs.
 pub(crate) const LOG_TARGET: &str = "rustdds";
 
-/// A topic of DDS.
 pub(super) type DdsTopic = rustdds::Topic;
 
 /// The topic of DDS with this name for messages of this type: ros2-client makes those of kind `msg` alone.
@@ -76,7 +77,9 @@ impl Network {
     /// # Errors
     /// If DDS cannot open its sockets.
     pub fn context(&self) -> Result<Context, BusError> {
-        let participant = builder(*self).build().map_err(|e| create_error("DDS participant", &e))?;
+        let ours = |guid: GUID| may_be_ours(&Guid(guid.to_bytes()).participant());
+        let participant = builder(*self).participant_listener(move |peer| ours(peer.guid)).build();
+        let participant = participant.map_err(|e| no_participant(self.domain, &e))?;
         Context::from_domain_participant(participant).map_err(|e| create_error("ROS context", &e))
     }
 }
@@ -84,19 +87,22 @@ impl Network {
 /// The ros2-client context of one process of a run.
 pub(super) fn context(network: Network, prefix: [u8; 12], gate: &Arc<Gate>) -> Result<Context, BusError> {
     let create = || {
-        let [filter, listener, readers] = std::array::from_fn(|_| Arc::clone(gate));
+        let [filter, listener, readers, reception] = std::array::from_fn(|_| Arc::clone(gate));
         builder(network)
             .guid_prefix(GuidPrefix::new(&prefix))
             .data_filter(move |writer, reader| filter.takes(Guid(writer.to_bytes()), Guid(reader.to_bytes())))
+            .reception_listener(move |writer, reader, event| {
+                reception.learnt(Guid(writer.to_bytes()), Guid(reader.to_bytes()), event);
+            })
             .participant_listener(move |peer| {
-                listener.discovered(Guid(peer.guid.to_bytes()), &peer.metatraffic_unicast_addresses);
+                listener.discovered(Guid(peer.guid.to_bytes()), &peer.metatraffic_unicast_addresses)
             })
             // Readers outside the run receive what is sent, and are not waited for.
             .reader_may_block(move |prefix| readers.admits_prefix(prefix.as_ref()))
             .build()
     };
     // RustDDS gives its threads ten seconds to start; a process that was suspended meanwhile tries once more.
-    let participant = create().or_else(|_| create()).map_err(|e| create_error("DDS participant", &e))?;
+    let participant = create().or_else(|_| create()).map_err(|e| no_participant(network.domain, &e))?;
     Context::from_domain_participant(participant).map_err(|e| create_error("ROS context", &e))
 }
 
@@ -222,7 +228,7 @@ fn offered(topic: &Topic) -> QosPolicies {
 /// The policies that a reader requests; `demand` is within the topic's QoS already.
 fn requested(topic: &Topic, demand: Demand) -> QosPolicies {
     // RustDDS keeps 64 samples by default: too few for a recorder, too many for packings of megabytes.
-    policies(demand.reliable, demand.reliable && topic.qos.transient_local, demand.depth, demand.depth)
+    policies(demand.reliable, demand.reliable && topic.qos.transient_local, demand.depth, demand.burst)
 }
 
 /// Offer of another process. A policy that is not announced has the default of DDS; the depth is announced by few
@@ -281,7 +287,6 @@ fn policies(reliable: bool, transient_local: bool, depth: u32, max_samples: u32)
 
 // ---- Publisher
 
-/// A publisher of bytes.
 pub(super) struct RawPublisher(DataWriter<RawPayload, RawAdapter>);
 
 impl RawPublisher {
@@ -322,11 +327,20 @@ impl RawPublisher {
     pub(super) fn wait_for_acknowledgments(&self, timeout: std::time::Duration) -> bool {
         self.0.wait_for_acknowledgments(timeout).unwrap_or(false)
     }
+
+    /// Number of samples that some reliable reader has not acknowledged.
+    pub(super) fn unacknowledged(&self) -> u64 {
+        self.0.unacknowledged_samples()
+    }
+
+    /// True if every matched reliable reader has answered this writer.
+    pub(super) fn is_known_to_readers(&self) -> bool {
+        self.0.is_known_to_matched_readers()
+    }
 }
 
 // ---- Subscription
 
-/// Why a sample was not taken.
 pub(super) enum TakeFailure {
     /// The representation is not CDR; the next call takes the sample after it.
     Representation(String),
@@ -334,7 +348,6 @@ pub(super) enum TakeFailure {
     Other(String),
 }
 
-/// A subscription to bytes.
 pub(super) struct RawSubscription(SimpleDataReader<RawBody, RawAdapter>);
 
 impl RawSubscription {
@@ -352,7 +365,6 @@ impl RawSubscription {
         Guid(self.0.guid().to_bytes())
     }
 
-    /// The source of its notifications.
     pub(super) fn source(&mut self) -> &mut impl mio::event::Source {
         &mut self.0
     }
@@ -362,7 +374,6 @@ impl RawSubscription {
         self.0.drain_read_notifications();
     }
 
-    /// The next sample, if any.
     pub(super) fn take(&self) -> Result<Option<Sample>, TakeFailure> {
         match self.0.try_take_one() {
             Ok(change) => Ok(change.map(sample)),
@@ -384,6 +395,12 @@ fn sample(change: DeserializedCacheChange<RawBody>) -> Sample {
         }),
     };
     Sample { body: change.into_value().0, info }
+}
+
+/// Returns the wall-clock time of this process, ns since 1970. It never goes back, in any thread: if the clock of the host is set
+/// back, it goes on from where it was.
+pub(crate) fn wall_nanos() -> u64 {
+    nanos(Timestamp::now())
 }
 
 /// An RTPS time (2⁻³² s since 1970) in nanoseconds.
@@ -425,12 +442,7 @@ impl Discovery {
         registry.register(self.0.as_status_source_mio1(), token, mio::Interest::READABLE)
     }
 
-    /// The next change, if any.
     pub(super) fn next(&self) -> Option<Change> {
-        let matched = |local: GUID, remote: GUID| {
-            let [local, remote] = [local, remote].map(|guid| Guid(guid.to_bytes()));
-            Change::Matched { local, remote }
-        };
         let misfit = |remote: GUID, what: &str, requested: &QosPolicies, offered: &QosPolicies| {
             let policies = unfit(requested, offered);
             Change::Misfit(format!("{what} ({}): {policies}", Guid(remote.to_bytes())))
@@ -442,11 +454,9 @@ impl Discovery {
                 let offer = Offer::of_wire(id, &writer.topic_name, &writer.type_name, qos, &writer.user_data);
                 Change::Writer { writer: id, topic: writer.topic_name, offer }
             }
-            Event::RemoteReaderMatched { local_writer, remote_reader } => {
-                matched(local_writer, remote_reader)
-            }
-            Event::RemoteWriterMatched { local_reader, remote_writer } => {
-                matched(local_reader, remote_writer)
+            Event::RemoteReaderMatched { local_writer: local, remote_reader: remote }
+            | Event::RemoteWriterMatched { local_reader: local, remote_writer: remote } => {
+                Change::Matched { local: Guid(local.to_bytes()), remote: Guid(remote.to_bytes()) }
             }
             Event::WriterLost { guid, .. } | Event::ReaderLost { guid, .. } => {
                 Change::Lost(Guid(guid.to_bytes()))

@@ -1,10 +1,13 @@
 //! Applies the rules of admission in RustDDS's threads.
 
+use super::announcements::Announcements;
 use super::processes;
 use crate::admission::{Admission, Participant, Process, Stranger};
+use crate::announced::Announced;
 use crate::identity::{Identity, Scope};
 use crate::lock::lock;
 use grainlab_msgs::Guid;
+use rustdds::ReceptionEvent;
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
 use std::sync::Mutex;
@@ -16,25 +19,55 @@ pub(super) struct Gate {
     admission: Mutex<Admission>,
     /// The resolved topic of each of our readers.
     topics: Mutex<BTreeMap<Guid, String>>,
+    announcements: Mutex<Announcements>,
 }
 
 impl Gate {
     pub(super) fn new(identity: Identity, own: Participant) -> Self {
-        Self { identity, admission: Mutex::new(Admission::new(identity, own)), topics: Mutex::default() }
+        Self {
+            identity,
+            admission: Mutex::new(Admission::new(identity, own)),
+            topics: Mutex::default(),
+            announcements: Mutex::default(),
+        }
     }
 
     pub(super) fn identity(&self) -> Identity {
         self.identity
     }
 
-    /// Registers one of our readers under its topic.
     pub(super) fn add_reader(&self, reader: Guid, topic: &str) {
         lock(&self.topics).insert(reader, topic.to_owned());
     }
 
-    /// Removes one of our readers.
     pub(super) fn remove_reader(&self, reader: Guid) {
         lock(&self.topics).remove(&reader);
+        lock(&self.announcements).forget(&reader);
+    }
+
+    /// Keeps what one of our readers learnt of an admitted writer of another process. Warns of messages that are too large.
+    pub(super) fn learnt(&self, writer: Guid, reader: Guid, event: ReceptionEvent) {
+        let participant = writer.participant();
+        if participant == reader.participant() || !self.admits(&writer) {
+            return;
+        }
+        // A reader without a topic belongs to a service.
+        let Some(topic) = lock(&self.topics).get(&reader).cloned() else { return };
+        let too_large = lock(&self.announcements).enter(writer, reader, event);
+        if let (Some(all), ReceptionEvent::TooLarge { size, limit, .. }) = (too_large, event)
+            && all.count.is_power_of_two()
+        {
+            let who = self.describe(&participant);
+            log::warn!(
+                "{topic}: a message of {who} with {size} bytes is not received, because the limit is {limit} bytes ({} so far). \
+                 Send it in parts",
+                all.count
+            );
+        }
+    }
+
+    pub(super) fn announced(&self, reader: Guid, latched: bool) -> Vec<Announced> {
+        lock(&self.announcements).of(&reader, latched)
     }
 
     /// True if one of our readers accepts a sample of this writer.
@@ -64,9 +97,14 @@ impl Gate {
         <&Participant>::try_from(prefix).is_ok_and(|prefix| lock(&self.admission).admits(prefix))
     }
 
-    /// Records a discovered participant and its addresses.
-    pub(super) fn discovered(&self, participant: Guid, addresses: &[SocketAddr]) {
+    /// Records a discovered participant and its addresses. True if discovery keeps room for it, however many others there are.
+    pub(super) fn discovered(&self, participant: Guid, addresses: &[SocketAddr]) -> bool {
         let participant = participant.participant();
+        self.look_up(participant, addresses);
+        lock(&self.admission).counts_on(&participant)
+    }
+
+    fn look_up(&self, participant: Participant, addresses: &[SocketAddr]) {
         // The process of a participant is looked up only where admission or a message needs it.
         let ours = self.identity.run.is_some() && lock(&self.admission).admits(&participant);
         // A launcher starts its processes as its own user: the run and a member number alone can be taken by anyone.
@@ -80,7 +118,6 @@ impl Gate {
         }
     }
 
-    /// Removes a participant that left.
     pub(super) fn lost(&self, participant: &Participant) {
         lock(&self.admission).lost(participant);
     }

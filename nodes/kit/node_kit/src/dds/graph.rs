@@ -1,10 +1,46 @@
 //! The endpoints of other processes and their matches, as discovery reports them.
 
-use super::direct::Change;
+use super::direct::{Change, Discovery};
+use super::gate::Gate;
 use crate::admission::Participant;
 use crate::offer::Offer;
 use grainlab_msgs::{Guid, TypeInfo};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+/// Keeps the graph up to date. The queue of changes drops what does not fit, so the background reader empties it while the node
+/// computes: many programs may come and go meanwhile.
+pub(super) struct Follower {
+    discovery: Discovery,
+    gate: Arc<Gate>,
+    pub(super) graph: Graph,
+    /// The graph changed, and no wait has returned it yet.
+    changed: bool,
+}
+
+impl Follower {
+    pub(super) fn new(discovery: Discovery, gate: Arc<Gate>, own: Participant) -> Self {
+        Self { discovery, gate, graph: Graph { own, ..Graph::default() }, changed: false }
+    }
+
+    /// Processes the queued changes; true if one changed the graph.
+    pub(super) fn follow(&mut self) -> bool {
+        let mut changed = false;
+        while let Some(change) = self.discovery.next() {
+            if let Change::ParticipantLost(participant) = &change {
+                self.gate.lost(participant);
+            }
+            changed |= self.graph.apply(change);
+        }
+        self.changed |= changed;
+        changed
+    }
+
+    /// True if the graph changed since the last call.
+    pub(super) fn take_changed(&mut self) -> bool {
+        std::mem::take(&mut self.changed)
+    }
+}
 
 /// Endpoints of other processes, and the matches of those of this process.
 #[derive(Default)]
@@ -17,12 +53,8 @@ pub(super) struct Graph {
 }
 
 impl Graph {
-    pub(super) fn new(own: Participant) -> Self {
-        Self { own, ..Self::default() }
-    }
-
     /// Processes one change; true if it changed the graph.
-    pub(super) fn apply(&mut self, change: Change) -> bool {
+    fn apply(&mut self, change: Change) -> bool {
         match change {
             Change::Writer { writer, topic, offer } => {
                 !self.is_ours(&writer) && self.writers.insert(writer, (topic, offer)).is_none()

@@ -1,11 +1,42 @@
 //! One DDS reader and the samples that were read from it but not taken yet.
 
-use super::direct::{RawSubscription, TakeFailure};
+use super::direct::{RawSubscription, TakeFailure, wall_nanos};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
 use crate::sample::{Sample, SampleId, SampleInfo};
-use crate::wall_clock::wall_nanos;
 use std::collections::VecDeque;
+
+/// Most bytes of the samples that are queued beyond the depth of a reader that takes bursts.
+const BURST_BYTES: usize = 64 << 20;
+
+/// Samples of one subscriber, the oldest first.
+#[derive(Default)]
+struct Queue {
+    samples: VecDeque<Sample>,
+    bytes: usize,
+}
+
+impl Queue {
+    /// Adds a sample; a full queue drops its oldest ones.
+    fn push(&mut self, sample: Sample, demand: Demand) {
+        self.bytes += size_of(&sample);
+        self.samples.push_back(sample);
+        let takes_bursts = demand.burst > demand.depth;
+        while self.samples.len() > demand.depth as usize && !(takes_bursts && self.bytes <= BURST_BYTES) {
+            self.pop();
+        }
+    }
+
+    fn pop(&mut self) -> Option<Sample> {
+        let sample = self.samples.pop_front()?;
+        self.bytes -= size_of(&sample);
+        Some(sample)
+    }
+}
+
+fn size_of(sample: &Sample) -> usize {
+    std::mem::size_of::<Sample>() + sample.body.capacity()
+}
 
 /// A reader shared by all subscriptions to its topic, with one queue per subscription.
 pub(super) struct Inbox {
@@ -13,7 +44,7 @@ pub(super) struct Inbox {
     topic: String,
     pub(super) demand: Demand,
     /// One for each subscriber; that of one that left is `None`.
-    queues: Vec<Option<VecDeque<Sample>>>,
+    queues: Vec<Option<Queue>>,
     /// Our own participant: the bus delivers its samples, and the copies from DDS are dropped.
     own: [u8; 12],
     /// Number of samples that RustDDS could not return: their representation is not CDR.
@@ -35,35 +66,34 @@ impl Inbox {
         let info = SampleInfo { writer, sequence, source_time: Some(now), received: now, about };
         let sample = Sample { body: body.to_vec(), info };
         for queue in self.queues.iter_mut().flatten() {
-            push_bounded(queue, sample.clone(), self.demand.depth);
+            queue.push(sample.clone(), self.demand);
         }
     }
 
     /// Adds a subscriber and returns its index.
     pub(super) fn add_queue(&mut self) -> usize {
-        self.queues.push(Some(VecDeque::new()));
+        self.queues.push(Some(Queue::default()));
         self.queues.len() - 1
     }
 
-    /// Removes a subscriber.
     pub(super) fn close_queue(&mut self, place: usize) {
         self.queues[place] = None;
     }
 
     pub(super) fn has_data(&self) -> bool {
-        self.queues.iter().flatten().any(|queue| !queue.is_empty())
+        self.queues.iter().flatten().any(|queue| !queue.samples.is_empty())
     }
 
     /// The next sample for one subscriber.
     pub(super) fn take(&mut self, place: usize) -> Result<Option<Sample>, BusError> {
-        if let Some(sample) = self.queues[place].as_mut().and_then(VecDeque::pop_front) {
+        if let Some(sample) = self.queues[place].as_mut().and_then(Queue::pop) {
             return Ok(Some(sample));
         }
         // With one subscriber a sample is returned directly; with more, it is also queued for the others.
         let Some(sample) = self.read()? else { return Ok(None) };
         for (other, queue) in self.queues.iter_mut().enumerate() {
             if let Some(queue) = queue.as_mut().filter(|_| other != place) {
-                push_bounded(queue, sample.clone(), self.demand.depth);
+                queue.push(sample.clone(), self.demand);
             }
         }
         Ok(Some(sample))
@@ -75,12 +105,12 @@ impl Inbox {
         let mut moved = false;
         while let Some(sample) = self.read()? {
             moved = true;
-            let mut queues: Vec<&mut VecDeque<Sample>> = self.queues.iter_mut().flatten().collect();
+            let mut queues: Vec<&mut Queue> = self.queues.iter_mut().flatten().collect();
             if let Some((last, others)) = queues.split_last_mut() {
                 for queue in others {
-                    push_bounded(queue, sample.clone(), self.demand.depth);
+                    queue.push(sample.clone(), self.demand);
                 }
-                push_bounded(last, sample, self.demand.depth);
+                last.push(sample, self.demand);
             }
         }
         Ok(moved)
@@ -103,10 +133,35 @@ impl Inbox {
     }
 }
 
-/// Queues a sample; a full queue drops its oldest one.
-fn push_bounded(queue: &mut VecDeque<Sample>, sample: Sample, depth: u32) {
-    if queue.len() >= depth as usize {
-        queue.pop_front();
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers of the samples that are left of `count` samples of `size` bytes.
+    fn kept(demand: Demand, count: i64, size: usize) -> Vec<i64> {
+        let mut queue = Queue::default();
+        for sequence in 1..=count {
+            let info = SampleInfo {
+                writer: Default::default(),
+                sequence,
+                source_time: None,
+                received: 0,
+                about: None,
+            };
+            queue.push(Sample { body: vec![0; size], info }, demand);
+        }
+        let kept = std::iter::from_fn(|| queue.pop()).map(|sample| sample.info.sequence).collect();
+        assert_eq!(queue.bytes, 0);
+        kept
     }
-    queue.push_back(sample);
+
+    #[test]
+    fn a_full_queue_drops_the_oldest_and_one_for_bursts_is_full_by_its_bytes() {
+        let demand = Demand::reliable(3);
+        assert_eq!(kept(demand, 5, 10), [3, 4, 5]);
+        let burst = demand.with_burst(4);
+        assert_eq!(kept(burst, 20_000, 10).len(), 20_000);
+        assert_eq!(kept(burst, 20, BURST_BYTES / 4), [18, 19, 20], "at least the depth");
+        assert_eq!(kept(burst, 20, BURST_BYTES / 10).len(), 9);
+    }
 }

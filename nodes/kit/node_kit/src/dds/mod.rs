@@ -7,6 +7,7 @@
 //! - `network`: domain and reach; `static_peers`: hosts that are found without multicast
 //! - `handles`: values by handles; `writer`: one writer; `direct`: what ros2-client lacks, from RustDDS
 
+mod announcements;
 mod background_reader;
 mod bus;
 mod direct;
@@ -20,6 +21,6 @@ mod static_peers;
 mod writer;
 
 pub use bus::DdsBus;
-pub(crate) use direct::LOG_TARGET;
-pub use network::{MAX_DOMAIN, Network, NetworkError, Reach};
+pub(crate) use direct::{LOG_TARGET, wall_nanos};
+pub use network::{CROWDING_ADVICE, MAX_DOMAIN, Network, NetworkError, Reach, crowding};
 pub use static_peers::StaticPeers;

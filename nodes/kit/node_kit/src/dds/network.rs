@@ -2,6 +2,7 @@
 
 use super::static_peers::StaticPeers;
 use nix::ifaddrs::getifaddrs;
+use ros2_client::Context;
 use std::net::Ipv4Addr;
 
 /// The range of discovery.
@@ -28,6 +29,18 @@ pub struct Network {
 
 /// Name or address of the only interface by which other hosts are reached. ROS 2 has no variable for it.
 const INTERFACE: &str = "GRAINLAB_INTERFACE";
+
+/// What to do about a full domain.
+pub const CROWDING_ADVICE: &str =
+    "choose another domain (ROS_DOMAIN_ID), or end the programs that fill this one";
+
+/// Returns a sentence about the participants that discovery ignores because the domain is full, if it ignores any.
+pub fn crowding(context: &Context) -> Option<String> {
+    let participant = context.domain_participant();
+    let (domain, refused) = (participant.domain_id(), participant.refused_participants());
+    let ignored = grainlab_console::count(refused, "participant");
+    (refused > 0).then(|| format!("DDS domain {domain} is full, and {ignored} of other programs are ignored"))
+}
 
 /// Greatest domain whose ports fit 16 bits with room for participants (RTPS 9.6.2.3).
 pub const MAX_DOMAIN: u16 = 232;

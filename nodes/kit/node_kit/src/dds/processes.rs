@@ -1,6 +1,7 @@
 //! Finds the process of this host that listens on a port: the owner of a participant of any vendor.
 
 use crate::admission::Process;
+use grainlab_console::escape_name;
 use std::collections::BTreeMap;
 use std::fs;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
@@ -20,8 +21,7 @@ pub(super) fn listening_on(addresses: &[SocketAddr], root: Option<u32>) -> Optio
     let inodes = inodes_by_port()?;
     let inode = addresses.iter().find_map(|a| inodes.get(&a.port()))?;
     let pid = owner_of(*inode)?;
-    let name = fs::read_to_string(format!("/proc/{pid}/comm")).unwrap_or_default().trim().to_owned();
-    Some(Process { pid, name, below_root: root.is_some_and(|root| is_below(pid, root)) })
+    Some(Process { pid, name: name_of(pid), below_root: root.is_some_and(|root| is_below(pid, root)) })
 }
 
 /// True if processes of other users alone, root excepted, listen on these addresses of one participant. False if it is on
@@ -81,9 +81,16 @@ fn is_below(pid: u32, root: u32) -> bool {
     parents.take(GENERATIONS).any(|ancestor| ancestor == root)
 }
 
-/// The fourth field of `/proc/PID/stat`; the second, the name, may contain spaces and brackets.
+/// Returns the name of a process as one line of text. A process chooses its name, which may hold any bytes.
+fn name_of(pid: u32) -> String {
+    let name = fs::read(format!("/proc/{pid}/comm")).unwrap_or_default();
+    escape_name(String::from_utf8_lossy(&name).trim()).into_owned()
+}
+
+/// Returns the fourth field of `/proc/PID/stat`. The second field, the name, may hold any bytes.
 fn parent_of(pid: u32) -> Option<u32> {
-    let stat = fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
+    let stat = fs::read(format!("/proc/{pid}/stat")).ok()?;
+    let stat = String::from_utf8_lossy(&stat);
     let (_, behind_name) = stat.rsplit_once(')')?;
     behind_name.split_whitespace().nth(1)?.parse().ok().filter(|parent| *parent > 0)
 }
@@ -91,6 +98,8 @@ fn parent_of(pid: u32) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::{BufRead, BufReader};
+    use std::process::Stdio;
 
     #[test]
     fn the_process_that_holds_a_socket_is_found_and_so_is_what_started_it() {
@@ -104,6 +113,20 @@ mod tests {
         assert!(!listening_on(&[address], None).unwrap().below_root);
         drop(socket);
         assert_eq!(listening_on(&[address], None), None);
+    }
+
+    #[test]
+    fn a_process_cannot_name_itself_by_an_escape_sequence_or_hide_its_parent_by_other_bytes() {
+        let script = r"printf '\033[31m)\377' > /proc/$$/comm; echo named; read end";
+        let mut shell = std::process::Command::new("sh");
+        let pipes = shell.args(["-c", script]).stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut child = pipes.spawn().unwrap();
+        let mut line = String::new();
+        BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        assert_eq!(name_of(child.id()), "\\u{1b}[31m)\u{fffd}");
+        assert_eq!(parent_of(child.id()), Some(std::process::id()));
+        drop(child.stdin.take());
+        child.wait().unwrap();
     }
 
     #[test]

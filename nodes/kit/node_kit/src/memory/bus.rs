@@ -99,12 +99,6 @@ impl Bus for MemoryBus {
         }
     }
 
-    fn withdraw(&mut self, publisher: PublisherId) {
-        if let Some(writer) = self.writers.get(publisher.0) {
-            self.state.borrow_mut().writers[*writer].alive = false;
-        }
-    }
-
     fn publish_about(
         &mut self,
         publisher: PublisherId,

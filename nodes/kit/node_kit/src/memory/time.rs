@@ -1,7 +1,7 @@
 //! Time of a network in memory: virtual, or that of this host.
 
 use super::alarm::Alarm;
-use crate::wall_clock;
+use crate::dds;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -40,7 +40,7 @@ impl Time {
     pub(super) fn wall_nanos(&self) -> u64 {
         match &self.real {
             None => (EPOCH_NANOS + self.transit.as_nanos() as u64).saturating_add_signed(self.wall_offset),
-            Some(_) => wall_clock::wall_nanos(),
+            Some(_) => dds::wall_nanos(),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::value::{ParameterError, ParameterValue};
 use super::yaml::Yaml;
+use grainlab_console::input;
 use std::path::Path;
 
 const PARAMETERS_KEY: &str = "ros__parameters";
@@ -20,17 +21,9 @@ pub(super) struct Given {
 ///
 /// A file without a key for the node is an error: it would be ignored without a message.
 pub(super) fn read(path: &Path, node: &str) -> Result<Vec<Given>, ParameterError> {
-    let text = std::fs::read_to_string(path)
+    let text = input::text(path, input::SETTINGS)
         .map_err(|e| ParameterError(format!("{}: cannot read: {e}", path.display())))?;
     parse(&text, path, node)
-}
-
-/// Names and values of the parameters that the file gives to `node` (fully qualified), in the order of the file.
-///
-/// # Errors
-/// A file that cannot be read, or has nothing for the node.
-pub fn parameters_of_file(path: &Path, node: &str) -> Result<Vec<(String, ParameterValue)>, ParameterError> {
-    Ok(read(path, node)?.into_iter().map(|given| (given.name, given.value)).collect())
 }
 
 fn parse(text: &str, path: &Path, node: &str) -> Result<Vec<Given>, ParameterError> {
@@ -176,6 +169,18 @@ mod tests {
         ] {
             let error = read_text(text, "/servo").expect_err(text).to_string();
             assert!(error.contains(needle), "{text}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_file_that_may_be_endless_or_is_too_large_is_refused_before_it_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let large = folder.path().join("large.yaml");
+        std::fs::write(&large, "#".repeat(2 << 20)).unwrap();
+        for (path, cause) in [(Path::new("/dev/null"), "it is a device"), (&large, "more than 1048576 bytes")]
+        {
+            let ParameterError(error) = read(path, "/servo").unwrap_err();
+            assert!(error.contains(cause), "{error}");
         }
     }
 }

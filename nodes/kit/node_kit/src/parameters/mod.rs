@@ -6,7 +6,6 @@ mod spec;
 mod value;
 mod yaml;
 
-pub use file::parameters_of_file;
 pub use set::Parameters;
 pub(crate) use set::coerce;
 pub use spec::{ParameterSpec, Range};

@@ -60,7 +60,6 @@ impl Parameters {
         Self { specs: specs.into(), values: Arc::new(Mutex::new(values)) }
     }
 
-    /// The declaration of a parameter.
     pub(crate) fn spec(&self, name: &str) -> Option<&ParameterSpec> {
         self.specs.iter().find(|spec| spec.name == name)
     }
@@ -112,7 +111,6 @@ impl Parameters {
         T::from_parameter(value).unwrap_or_else(|| panic!("parameter {name:?} is a {}", type_name(value)))
     }
 
-    /// The values now.
     pub(crate) fn snapshot(&self) -> BTreeMap<&'static str, ParameterValue> {
         lock(&self.values).clone()
     }

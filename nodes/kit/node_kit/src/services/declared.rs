@@ -46,7 +46,6 @@ impl Parameters {
         Ok(())
     }
 
-    /// The value of `use_sim_time`.
     pub(crate) fn use_sim_time(&self) -> bool {
         self.snapshot().get(USE_SIM_TIME) == Some(&ParameterValue::Boolean(true))
     }
@@ -70,7 +69,6 @@ impl Parameters {
         self.snapshot().keys().map(|name| (*name).to_owned()).collect()
     }
 
-    /// The description of each name.
     pub(super) fn describe(&self, names: &[String]) -> Vec<ParameterDescriptor> {
         names.iter().map(|name| self.spec(name).map_or_else(|| unknown(name), descriptor)).collect()
     }

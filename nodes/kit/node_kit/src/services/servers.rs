@@ -92,7 +92,6 @@ impl NodeServers {
         registry.register(&mut self.type_description, token, Interest::READABLE)
     }
 
-    /// Answers all requests that arrived.
     pub(super) fn answer(&self) {
         let value = |name: &String| lock(&self.node).get_parameter(name).unwrap_or(ParameterValue::NotSet);
         let log = &self.log;

@@ -12,7 +12,6 @@ pub(super) struct GetTypeDescriptionRequest {
     pub(super) include_type_sources: bool,
 }
 
-/// Response of the service.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct GetTypeDescriptionResponse {
     pub(super) successful: bool,
@@ -44,7 +43,6 @@ impl Message for GetTypeDescriptionResponse {}
 const SEPARATOR: &str =
     "\n================================================================================\n";
 
-/// The answer to a request.
 pub(super) fn described(request: &GetTypeDescriptionRequest) -> GetTypeDescriptionResponse {
     let failed = |failure_reason: String| GetTypeDescriptionResponse {
         failure_reason,

@@ -1,12 +1,12 @@
-use crate::lattice::{DIAMETER, OVERLAP, lattice};
 use crate::sample::{measurement, message};
 use grainlab_acoustic_probe::{AcousticProbe, DECLINED_STEP, MeasureError, Settings, measure, messages};
 use grainlab_core::Material;
-use grainlab_core::results::NotJammed;
+use grainlab_core::results::NoStiffness;
 use grainlab_msgs::boundary::WaveSpeedsReading;
 use grainlab_msgs::msg::{Packing, WaveSpeeds, Waveform};
 use grainlab_msgs::{to_cdr, topics};
 use grainlab_node_kit::{Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Subscription};
+use grainlab_testkit::packings::{DIAMETER, OVERLAP, lattice};
 
 /// A publisher of packings that receives the results.
 struct Source {
@@ -39,7 +39,7 @@ fn probe(bus: &mut MemoryBus) -> AcousticProbe {
         let packing = grainlab_core::Packing::try_from(message).map_err(MeasureError::Refused)?;
         let step = packing.step;
         if packing.contacts.is_empty() {
-            return Err(MeasureError::NotJammed { step, reason: NotJammed::NoContacts { grains: 1 } });
+            return Err(MeasureError::NoStiffness { step, reason: NoStiffness::NoContacts { grains: 1 } });
         }
         messages(&message.header, &packing, &measurement())
             .map_err(|reason| MeasureError::Result { step, reason })
@@ -124,7 +124,7 @@ fn a_malformed_packing_is_refused_by_name_and_the_next_one_is_measured() {
 #[test]
 fn a_gas_is_declined_by_the_measurement_itself() {
     let error = measure(&message(-OVERLAP), &Settings::default()).unwrap_err();
-    assert!(matches!(error, MeasureError::NotJammed { step: 12, .. }), "{error}");
+    assert!(matches!(error, MeasureError::NoStiffness { step: 12, .. }), "{error}");
     assert_eq!(error.step(), Some(12));
 }
 

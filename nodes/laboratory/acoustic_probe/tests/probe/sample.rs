@@ -1,11 +1,11 @@
 //! A packing with known properties, and a result of its measurement.
 
-use crate::lattice::lattice;
 use grainlab_acoustics::Channel;
 use grainlab_acoustics::{AcousticsError, EffectiveDensity, Measurement, Trace};
 use grainlab_core::{Mat3, MeasuredWave, Vec3, WaveMethod, WaveSpeed};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::msg;
+use grainlab_testkit::packings::lattice;
 
 pub(crate) fn message(overlap: f64) -> msg::Packing {
     packing_message(&lattice(overlap), "lattice", vec![1, 2, 3])

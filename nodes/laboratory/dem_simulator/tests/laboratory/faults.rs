@@ -1,6 +1,6 @@
 //! Invalid messages, and runs that cannot continue.
 
-use crate::bench::{Bench, FOREVER, Record, exit_of};
+use grainlab_buskit::{Bench, FOREVER, Kind, Record, exit_of};
 use grainlab_core::{ComponentControl, Packing};
 use grainlab_dem_simulator::Settings;
 use grainlab_msgs::msg::{self, PackingReport, RunState, StrainRate, Stress};
@@ -55,12 +55,12 @@ fn run_with(honest: u64, lies: u32, lie: f64) -> (Option<Exit>, Record) {
 /// A run with or without speculative steps, with the number of answers predicted and the total.
 fn run_ahead_with(honest: u64, lies: u32, lie: f64, ahead: bool) -> (Option<Exit>, Record, [u64; 2]) {
     let bench = Bench::new(0);
-    let (mut recorder, recorder_bus) = bench.recorder();
+    let (mut recorder, recorder_bus) = bench.node(Kind::Recorder);
     let (mut simulator, simulator_bus) = bench.simulator(&Settings { ahead, ..Settings::default() }, None);
     let mut servo_bus = bench.bus("servo_controller");
     let mut servo = BadServo::new(&mut servo_bus, honest, lies, lie);
     let mut actors = vec![
-        Actor::new(&mut recorder, recorder_bus),
+        Actor::new(&mut *recorder, recorder_bus),
         Actor::new(&mut simulator, simulator_bus),
         Actor::new(&mut servo, servo_bus),
     ];
@@ -154,9 +154,9 @@ fn a_packing_with_an_index_out_of_range_is_refused_and_the_analyzer_continues() 
     let bench = Bench::new(0);
     let mut source = bench.bus("source");
     let packings: Publisher<msg::Packing> = Publisher::advertise(&mut source, &topics::PACKING).unwrap();
-    let (mut recorder, recorder_bus) = bench.recorder();
-    let (mut analyzer, analyzer_bus) = bench.analyzer();
-    let mut actors = [Actor::new(&mut recorder, recorder_bus), Actor::new(&mut analyzer, analyzer_bus)];
+    let (mut recorder, recorder_bus) = bench.node(Kind::Recorder);
+    let (mut analyzer, analyzer_bus) = bench.node(Kind::Analyzer);
+    let mut actors = [Actor::new(&mut *recorder, recorder_bus), Actor::new(&mut *analyzer, analyzer_bus)];
     packings.publish(&mut source, &broken).unwrap();
     source.publish(packings.id(), &to_cdr(&good)[..1000]).unwrap();
     run_until(&bench.hub, &mut actors, Duration::from_secs(1), |_| false);

@@ -1,6 +1,6 @@
 //! Nodes that join, leave, and return in the middle of a run.
 
-use crate::bench::{Bench, FOREVER, Record, exit_of, scene};
+use grainlab_buskit::{Bench, FOREVER, Kind, Record, exit_of, tiny};
 use grainlab_core::Packing;
 use grainlab_dem_simulator::{DemSimulator, Settings};
 use grainlab_msgs::boundary::BoundaryError;
@@ -21,25 +21,25 @@ fn requests(record: &Record) -> usize {
 fn a_fresh_servo_in_the_middle_of_a_run_changes_no_byte() {
     let clean = Bench::new(0).whole_run(&Settings::default(), None).without_repeats();
     let bench = Bench::new(0);
-    let (mut recorder, recorder_bus) = bench.recorder();
-    let (mut analyzer, analyzer_bus) = bench.analyzer();
-    let (mut inversion, inversion_bus) = bench.inversion();
+    let (mut recorder, recorder_bus) = bench.node(Kind::Recorder);
+    let (mut analyzer, analyzer_bus) = bench.node(Kind::Analyzer);
+    let (mut inversion, inversion_bus) = bench.node(Kind::Inversion);
     let (mut simulator, simulator_bus) = bench.simulator(&Settings::default(), None);
-    let (mut first, first_bus) = bench.servo();
+    let (mut first, first_bus) = bench.node(Kind::Servo);
     let mut actors = vec![
-        Actor::new(&mut recorder, recorder_bus),
-        Actor::new(&mut analyzer, analyzer_bus),
-        Actor::new(&mut inversion, inversion_bus),
+        Actor::new(&mut *recorder, recorder_bus),
+        Actor::new(&mut *analyzer, analyzer_bus),
+        Actor::new(&mut *inversion, inversion_bus),
         Actor::new(&mut simulator, simulator_bus),
-        Actor::new(&mut first, first_bus),
+        Actor::new(&mut *first, first_bus),
     ];
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| requests(&bench.record.borrow()) > 300));
     actors.pop();
     let killed = bench.hub.now();
     run_until(&bench.hub, &mut actors, killed + Duration::from_secs(3), |_| false);
     assert!(!bench.record.borrow().complete(), "the simulator waits");
-    let (mut second, second_bus) = bench.servo();
-    actors.push(Actor::new(&mut second, second_bus));
+    let (mut second, second_bus) = bench.node(Kind::Servo);
+    actors.push(Actor::new(&mut *second, second_bus));
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| bench.record.borrow().complete()));
     assert_eq!(bench.record.borrow().without_repeats().difference(&clean), None);
 }
@@ -83,13 +83,13 @@ impl Node for Stopped {
 fn an_interrupted_run_saves_its_state_and_goes_on_from_there() {
     let clean = Bench::new(0).whole_run(&Settings::default(), None).without_repeats();
     let bench = Bench::new(0);
-    let (mut recorder, recorder_bus) = bench.recorder();
-    let (mut servo, servo_bus) = bench.servo();
+    let (mut recorder, recorder_bus) = bench.node(Kind::Recorder);
+    let (mut servo, servo_bus) = bench.node(Kind::Servo);
     let (simulator, simulator_bus) = bench.simulator(&Settings::default(), None);
     let mut stopped = Stopped { simulator, steps_left: 500 };
     let mut actors = [
-        Actor::new(&mut recorder, recorder_bus),
-        Actor::new(&mut servo, servo_bus),
+        Actor::new(&mut *recorder, recorder_bus),
+        Actor::new(&mut *servo, servo_bus),
         Actor::new(&mut stopped, simulator_bus),
     ];
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |actors| actors[2].ended.is_some()));
@@ -112,12 +112,12 @@ fn an_interrupted_run_saves_its_state_and_goes_on_from_there() {
 fn an_analyzer_that_comes_late_gets_the_last_packing_and_makes_the_same_bytes() {
     let clean = Bench::new(0).whole_run(&Settings::default(), None);
     let bench = Bench::new(0);
-    let (mut recorder, recorder_bus) = bench.recorder();
-    let (mut servo, servo_bus) = bench.servo();
+    let (mut recorder, recorder_bus) = bench.node(Kind::Recorder);
+    let (mut servo, servo_bus) = bench.node(Kind::Servo);
     let (mut simulator, simulator_bus) = bench.simulator(&Settings::default(), None);
     let mut actors = vec![
-        Actor::new(&mut recorder, recorder_bus),
-        Actor::new(&mut servo, servo_bus),
+        Actor::new(&mut *recorder, recorder_bus),
+        Actor::new(&mut *servo, servo_bus),
         Actor::new(&mut simulator, simulator_bus),
     ];
     let finished = |record: &Record| {
@@ -125,9 +125,9 @@ fn an_analyzer_that_comes_late_gets_the_last_packing_and_makes_the_same_bytes() 
     };
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| finished(&bench.record.borrow())));
     let ((mut analyzer, analyzer_bus), (mut inversion, inversion_bus)) =
-        (bench.analyzer(), bench.inversion());
-    actors.push(Actor::new(&mut analyzer, analyzer_bus));
-    actors.push(Actor::new(&mut inversion, inversion_bus));
+        (bench.node(Kind::Analyzer), bench.node(Kind::Inversion));
+    actors.push(Actor::new(&mut *analyzer, analyzer_bus));
+    actors.push(Actor::new(&mut *inversion, inversion_bus));
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| bench.record.borrow().complete()));
     for topic in [topics::PACKING_REPORT, topics::MICROSTRUCTURE] {
         assert!(
@@ -142,17 +142,17 @@ fn a_run_waits_for_the_readers_it_was_told_to_wait_for() {
     let settings =
         Settings { wait_for: vec![topics::STRESS, topics::PACKING], min_readers: 2, ..Settings::default() };
     let (mut simulator, simulator_bus) = bench.simulator(&settings, None);
-    let (mut servo, servo_bus) = bench.servo();
-    let (mut analyzer, analyzer_bus) = bench.analyzer();
+    let (mut servo, servo_bus) = bench.node(Kind::Servo);
+    let (mut analyzer, analyzer_bus) = bench.node(Kind::Analyzer);
     let mut actors = vec![
         Actor::new(&mut simulator, simulator_bus),
-        Actor::new(&mut servo, servo_bus),
-        Actor::new(&mut analyzer, analyzer_bus),
+        Actor::new(&mut *servo, servo_bus),
+        Actor::new(&mut *analyzer, analyzer_bus),
     ];
     run_until(&bench.hub, &mut actors, Duration::from_secs(60), |_| false);
     assert_eq!(actors[0].bus.published()[0].count, 0, "there is one reader of each only");
-    let (mut recorder, recorder_bus) = bench.recorder();
-    actors.push(Actor::new(&mut recorder, recorder_bus));
+    let (mut recorder, recorder_bus) = bench.node(Kind::Recorder);
+    actors.push(Actor::new(&mut *recorder, recorder_bus));
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| requests(&bench.record.borrow()) > 10));
     let first: Vec<msg::Stress> = bench.record.borrow().messages(&topics::STRESS);
     assert_eq!(first[0].sequence, 0, "the recorder missed nothing");
@@ -165,22 +165,22 @@ fn a_second_simulator_ends_and_the_first_one_does_not_notice() {
     // The intruder joins first, so that its GUID is the smaller one; nevertheless the running simulator
     // continues.
     let mut intruder_bus = bench.bus("dem_simulator");
-    let (mut recorder, recorder_bus) = bench.recorder();
-    let (mut analyzer, analyzer_bus) = bench.analyzer();
-    let (mut inversion, inversion_bus) = bench.inversion();
-    let (mut servo, servo_bus) = bench.servo();
+    let (mut recorder, recorder_bus) = bench.node(Kind::Recorder);
+    let (mut analyzer, analyzer_bus) = bench.node(Kind::Analyzer);
+    let (mut inversion, inversion_bus) = bench.node(Kind::Inversion);
+    let (mut servo, servo_bus) = bench.node(Kind::Servo);
     let (mut simulator, simulator_bus) = bench.simulator(&Settings::default(), None);
     let mut actors = vec![
-        Actor::new(&mut recorder, recorder_bus),
-        Actor::new(&mut analyzer, analyzer_bus),
-        Actor::new(&mut inversion, inversion_bus),
-        Actor::new(&mut servo, servo_bus),
+        Actor::new(&mut *recorder, recorder_bus),
+        Actor::new(&mut *analyzer, analyzer_bus),
+        Actor::new(&mut *inversion, inversion_bus),
+        Actor::new(&mut *servo, servo_bus),
         Actor::new(&mut simulator, simulator_bus),
     ];
     // Delays give the intruder time for its check while the run lasts.
     bench.hub.set_faults("/stress", Faults { delay: Duration::from_millis(20), ..Default::default() });
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| requests(&bench.record.borrow()) > 100));
-    let mut intruder = DemSimulator::new(&mut intruder_bus, scene(), None, Settings::default()).unwrap();
+    let mut intruder = DemSimulator::new(&mut intruder_bus, tiny(), None, Settings::default()).unwrap();
     actors.push(Actor::new(&mut intruder, intruder_bus));
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |actors| actors[5].ended.is_some()));
     assert!(!bench.record.borrow().complete(), "the run was still under way");
@@ -200,13 +200,13 @@ fn a_second_simulator_ends_and_the_first_one_does_not_notice() {
 #[test]
 fn of_two_simulators_that_start_at_once_one_runs() {
     let bench = Bench::new(0);
-    let (mut recorder, recorder_bus) = bench.recorder();
-    let (mut servo, servo_bus) = bench.servo();
+    let (mut recorder, recorder_bus) = bench.node(Kind::Recorder);
+    let (mut servo, servo_bus) = bench.node(Kind::Servo);
     let (mut smaller, smaller_bus) = bench.simulator(&Settings::default(), None);
     let (mut larger, larger_bus) = bench.simulator(&Settings::default(), None);
     let mut actors = vec![
-        Actor::new(&mut recorder, recorder_bus),
-        Actor::new(&mut servo, servo_bus),
+        Actor::new(&mut *recorder, recorder_bus),
+        Actor::new(&mut *servo, servo_bus),
         Actor::new(&mut smaller, smaller_bus),
         Actor::new(&mut larger, larger_bus),
     ];

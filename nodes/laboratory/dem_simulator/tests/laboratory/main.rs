@@ -1,6 +1,5 @@
 //! The whole laboratory on the bus in memory: four nodes and a recorder in one thread and in virtual time.
 
-mod bench;
 mod faults;
 mod handover;
 mod run;

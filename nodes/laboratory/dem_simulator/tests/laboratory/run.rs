@@ -1,6 +1,6 @@
 //! A run from beginning to end.
 
-use crate::bench::{Bench, FOREVER, Record, exit_of};
+use grainlab_buskit::{Bench, FOREVER, Kind, Record, exit_of};
 use grainlab_dem_simulator::Settings;
 use grainlab_msgs::msg::{Estimate, Microstructure, Packing, PackingReport, RunState, StrainRate, Stress};
 use grainlab_msgs::{Topic, stamp, topics};
@@ -105,19 +105,19 @@ fn end_of_simulator(until_inverted: &[Topic], with_inversion: bool) -> (Option<E
     let bench = Bench::new(0);
     let settings =
         Settings { exit_when_finished: true, until_inverted: until_inverted.to_vec(), ..Settings::default() };
-    let (mut recorder, recorder_bus) = bench.recorder();
-    let (mut analyzer, analyzer_bus) = bench.analyzer();
-    let (mut inversion, inversion_bus) = bench.inversion();
-    let (mut servo, servo_bus) = bench.servo();
+    let (mut recorder, recorder_bus) = bench.node(Kind::Recorder);
+    let (mut analyzer, analyzer_bus) = bench.node(Kind::Analyzer);
+    let (mut inversion, inversion_bus) = bench.node(Kind::Inversion);
+    let (mut servo, servo_bus) = bench.node(Kind::Servo);
     let (mut simulator, simulator_bus) = bench.simulator(&settings, None);
     let mut actors = vec![
         Actor::new(&mut simulator, simulator_bus),
-        Actor::new(&mut recorder, recorder_bus),
-        Actor::new(&mut servo, servo_bus),
-        Actor::new(&mut analyzer, analyzer_bus),
+        Actor::new(&mut *recorder, recorder_bus),
+        Actor::new(&mut *servo, servo_bus),
+        Actor::new(&mut *analyzer, analyzer_bus),
     ];
     if with_inversion {
-        actors.push(Actor::new(&mut inversion, inversion_bus));
+        actors.push(Actor::new(&mut *inversion, inversion_bus));
     }
     let finished = || {
         let state = bench.record.borrow().last::<RunState>(&topics::RUN_STATE);

@@ -38,17 +38,6 @@ fn all(speeds: &WaveSpeeds) -> impl Fn(&str) -> Estimate + use<> {
     move |model| message.estimates.iter().find(|e| e.model == model).unwrap().clone()
 }
 
-fn only(keep: impl Fn(&WaveSpeed) -> bool) -> WaveSpeeds {
-    let mut speeds = upright();
-    speeds.speeds.retain(keep);
-    speeds
-}
-
-fn is_compressional(s: &WaveSpeed) -> bool {
-    let (n, p) = (&s.direction, &s.polarization);
-    (n.x * p.x + n.y * p.y + n.z * p.z).abs() > 0.7
-}
-
 #[test]
 fn an_unknown_axis_is_inferred_from_the_speeds_if_set() {
     let turn = Rotation3::from_euler_angles(0.7, -0.4, 0.2);
@@ -91,36 +80,6 @@ fn a_sample_that_is_not_quite_a_medium_is_noted_and_no_conflict() {
     let exact = answer(&everywhere(&s1_medium()), &Settings::default());
     assert!(of_data(&e, 18) > 4.0 * of_data(&exact, 18), "{} {}", of_data(&e, 18), of_data(&exact, 18));
     assert!((e.eps[0] - exact.eps[0]).abs() < 3.0 * e.covariance[18].sqrt());
-}
-
-#[test]
-fn shear_waves_alone_determine_eps_for_the_ratios_and_all_for_the_relaxed_network() {
-    let shear = all(&only(|s| !is_compressional(s)));
-    let ratio = shear("ratio");
-    assert_eq!(
-        (ratio.status, !ratio.k.is_empty(), !ratio.eps.is_empty()),
-        (Estimate::STATUS_EXTRAPOLATED, false, true)
-    );
-    assert!(
-        says(&ratio, "do not determine k, k_hat") && says(&ratio, "do not determine Theta, C11, C33, C13")
-    );
-    let (relaxed, directional) = (shear("relaxed"), shear("directional"));
-    assert!(!relaxed.z.is_empty() && !relaxed.k.is_empty() && !relaxed.eps.is_empty(), "{relaxed:?}");
-    assert!(!directional.k.is_empty() && !directional.eps.is_empty(), "{directional:?}");
-    assert!(!says(&relaxed, "the data do not determine"), "{:?}", relaxed.warnings);
-}
-
-#[test]
-fn compression_alone_tells_the_relaxed_network_something_and_the_ratios_say_what_they_lack() {
-    let compression = all(&only(is_compressional));
-    let ratio = compression("ratio");
-    assert_eq!(ratio.status, Estimate::STATUS_UNKNOWN);
-    assert!(says(&ratio, "needs G12") && says(&ratio, "do not determine G12, G13, Theta, C13"), "{ratio:?}");
-    let relaxed = compression("relaxed");
-    assert!(!relaxed.z.is_empty() && !relaxed.eps.is_empty(), "{relaxed:?}");
-    // With a larger error than from all of them.
-    let whole = all(&upright())("relaxed");
-    assert!(relaxed.covariance[12] > whole.covariance[12] && relaxed.covariance[18] > whole.covariance[18]);
 }
 
 #[test]

@@ -28,6 +28,7 @@ damping = 0.3
 drag = 1.5e3
 control = { xx = { stress = 50e3 }, yy = { stress = 50e3 }, zz = { stress = 50e3 }, yz = { stress = 0 }, xz = { stress = 0 }, xy = { stress = 0 } }
 rate_limit = 30.0
+leak = 0.0
 control_period = 20
 until = { on_target = 1e-3, unbalanced = 1e-5, hold = 1e-4 }
 "#;
@@ -108,6 +109,22 @@ fn in_a_deforming_cell_the_difference_falls_in_proportion_to_the_time_step() {
         assert!((1.8..2.2).contains(&(pair[0] / pair[1])), "{off:?}");
     }
     assert!(off[2] < 1e-5, "{off:?}");
+}
+
+/// Expected: as many contacts at the limit of their elastic normal force, although LAMMPS limits forces with their dashpots.
+#[test]
+fn contacts_at_the_coulomb_limit_are_as_many_as_of_our_engine() {
+    let Some(lammps) = lammps(1) else { return };
+    let dt = 4e-8;
+    let start = Packing { time_step: dt, ..PRESSED.clone() };
+    for rate in [[-40.0, 20.0, 20.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 40.0, 0.0]] {
+        let sliding = [&Dem as &dyn EngineFactory, &lammps].map(|factory| {
+            let (packing, _) = stepped(factory, &start, &settings(0.3, 0.3, dt), rate, &[50; 60]);
+            packing.sliding_fraction()
+        });
+        eprintln!("{rate:?}: {sliding:?}");
+        assert!(sliding[0] > 0.2 && (sliding[0] - sliding[1]).abs() < 0.03, "{rate:?}: {sliding:?}");
+    }
 }
 
 /// Expected: a packing and a state that are saved between exchanges change nothing, also where contacts slide, and

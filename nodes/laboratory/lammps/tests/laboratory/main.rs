@@ -5,7 +5,7 @@ mod faults;
 mod scenes;
 
 use grainlab_lammps::Lammps;
-use grainlab_verification::conformance::CLAIMS;
+use grainlab_verify::conformance::CLAIMS;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 

@@ -1,10 +1,8 @@
 //! The actions of a launch file.
 
-use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
-use serde::{Deserialize, Serialize, Serializer};
+use serde::de::{Deserializer, Error};
+use serde::{Deserialize, Serialize};
 
-/// A launch file.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct File {
@@ -35,12 +33,10 @@ pub(super) enum Entry {
     SetEnv(Setting),
     #[serde(alias = "push-ros-namespace")]
     PushRosNamespace(Namespace),
-    SetParameter(Setting),
-    SetRemap(Remap),
-    Group(Group),
+    Group(Vec<Placed>),
     Include(Include),
-    Executable(Program),
-    Node(Program),
+    Executable(Executable),
+    Node(Node),
 }
 
 /// A text, number or truth value, or a list of them as YAML.
@@ -60,26 +56,14 @@ impl<'de> Deserialize<'de> for Text {
     }
 }
 
-/// The conditions of an action.
-pub(super) type Condition<'a> = (&'a Option<Text>, &'a Option<Text>);
-
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Argument {
     pub(super) name: String,
     pub(super) default: Option<Text>,
-    #[serde(default)]
-    pub(super) choice: Vec<Choice>,
     description: Option<String>,
 }
 
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Choice {
-    pub(super) value: Text,
-}
-
-/// A name with its value.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Setting {
@@ -101,54 +85,6 @@ pub(super) struct Namespace {
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Remap {
-    pub(super) from: Text,
-    pub(super) to: Text,
-}
-
-/// Actions that run in a scope of their own, unless `scoped` is false.
-#[derive(Clone, Debug, Default, Deserialize, Serialize)]
-#[serde(remote = "Self", deny_unknown_fields)]
-pub(super) struct Group {
-    pub(super) children: Vec<Placed>,
-    /// The file that it is included from.
-    #[serde(skip)]
-    pub(super) file: Option<String>,
-    pub(super) scoped: Option<Text>,
-    #[serde(rename = "if")]
-    pub(super) if_: Option<Text>,
-    pub(super) unless: Option<Text>,
-}
-
-impl Serialize for Group {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        Self::serialize(self, to)
-    }
-}
-
-/// A list, or a mapping with `children`.
-impl<'de> Deserialize<'de> for Group {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        struct Either;
-        impl<'de> Visitor<'de> for Either {
-            type Value = Group;
-            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str("a list of actions, or a mapping with children")
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Group, A::Error> {
-                let children = Vec::deserialize(SeqAccessDeserializer::new(seq))?;
-                Ok(Group { children, ..Group::default() })
-            }
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Group, A::Error> {
-                Group::deserialize(MapAccessDeserializer::new(map))
-            }
-        }
-        from.deserialize_any(Either)
-    }
-}
-
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
 pub(super) struct Include {
     pub(super) file: String,
     #[serde(default, alias = "let")]
@@ -156,25 +92,38 @@ pub(super) struct Include {
     #[serde(rename = "if")]
     pub(super) if_: Option<Text>,
     pub(super) unless: Option<Text>,
+    /// The actions of the file, in the text that is kept with a run.
+    pub(super) children: Option<Vec<Placed>>,
 }
 
-/// A process: an executable by its `cmd`, or a node by `pkg` and `exec`.
-#[derive(Clone, Debug, Default, Deserialize, Serialize)]
-#[serde(deny_unknown_fields, default)]
-pub(super) struct Program {
-    pub(super) cmd: Option<String>,
-    pub(super) pkg: Option<Text>,
-    pub(super) exec: Option<Text>,
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Executable {
+    pub(super) cmd: String,
+    pub(super) name: Option<Text>,
+    pub(super) output: Option<Text>,
+    pub(super) respawn: Option<Text>,
+    pub(super) on_exit: Option<Text>,
+    #[serde(rename = "if")]
+    pub(super) if_: Option<Text>,
+    pub(super) unless: Option<Text>,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Node {
+    pub(super) pkg: Text,
+    pub(super) exec: Text,
     pub(super) namespace: Option<Text>,
     pub(super) args: Option<Text>,
-    pub(super) ros_args: Option<Text>,
+    #[serde(default)]
     pub(super) param: Vec<Parameter>,
+    #[serde(default)]
     pub(super) remap: Vec<Remap>,
     pub(super) name: Option<Text>,
     pub(super) output: Option<Text>,
     pub(super) respawn: Option<Text>,
     pub(super) on_exit: Option<Text>,
-    pub(super) env: Vec<Setting>,
     #[serde(rename = "if")]
     pub(super) if_: Option<Text>,
     pub(super) unless: Option<Text>,
@@ -187,4 +136,11 @@ pub(super) struct Parameter {
     pub(super) name: Option<String>,
     pub(super) value: Option<Text>,
     pub(super) from: Option<Text>,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Remap {
+    pub(super) from: Text,
+    pub(super) to: Text,
 }

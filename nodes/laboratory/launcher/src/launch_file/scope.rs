@@ -1,49 +1,50 @@
 //! Actions in their order: variables, conditions, namespaces, processes.
 
-use super::entry::{Condition, Entry, Group, Placed, Program, Text};
+use super::entry::{Entry, Executable, Node, Placed, Text};
 use super::words::{substitute, words};
-use crate::nodes::{NodeKind, Viewer};
+use crate::nodes::NodeKind;
 use crate::plan::{NodePlan, PlanError};
 use std::collections::BTreeMap;
 
 /// Settings of a place in a launch file.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Scope {
     variables: BTreeMap<String, String>,
     namespace: String,
     environment: Vec<(String, String)>,
-    /// Parameters and remaps of the nodes that follow.
-    arguments: Vec<String>,
 }
 
 impl Scope {
-    /// The outermost scope, with the values that are given to arguments.
-    pub(super) fn of(variables: BTreeMap<String, String>) -> Self {
-        Self { variables, ..Self::default() }
+    /// Returns the outermost scope, with the values that are given to arguments.
+    pub(super) fn new(variables: BTreeMap<String, String>) -> Self {
+        Self { variables, namespace: String::new(), environment: Vec::new() }
     }
 
-    /// The text with values for its substitutions.
+    /// Returns the text with values for its substitutions.
     fn text(&self, text: &str) -> Result<String, PlanError> {
-        let known = || self.variables.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
-        substitute(text, |name| self.variables.get(name).cloned(), known)
+        substitute(text, &self.variables, str::to_owned)
     }
 
-    fn holds(&self, (if_, unless): Condition<'_>) -> Result<bool, PlanError> {
-        let truth = |text: &Text| {
-            let value = self.text(&text.0)?;
-            match value.to_ascii_lowercase().as_str() {
+    fn optional(&self, text: &Option<Text>) -> Result<Option<String>, PlanError> {
+        text.as_ref().map(|text| self.text(&text.0)).transpose()
+    }
+
+    fn holds(&self, if_: &Option<Text>, unless: &Option<Text>) -> Result<bool, PlanError> {
+        let truth = |text: &Option<Text>, otherwise: bool| match self.optional(text)? {
+            None => Ok(otherwise),
+            Some(value) => match value.to_ascii_lowercase().as_str() {
                 "true" | "1" => Ok(true),
                 "false" | "0" => Ok(false),
-                _ => Err(PlanError(format!(
-                    "`{}` is no condition: {value:?} must be true, false, 1 or 0",
-                    text.0
-                ))),
-            }
+                _ => {
+                    let fault = "a condition (if, unless) must be true, false, 1 or 0";
+                    Err(PlanError(format!("{value:?}: {fault}")))
+                }
+            },
         };
-        Ok(if_.as_ref().map_or(Ok(true), truth)? && !unless.as_ref().map_or(Ok(false), truth)?)
+        Ok(truth(if_, true)? && !truth(unless, false)?)
     }
 
-    /// The namespace below that of the scope, or from the root with a slash before it.
+    /// Returns the namespace below the namespace of the scope, or from the root with a slash before it.
     fn below(&self, namespace: &str) -> String {
         let name = namespace.trim_end_matches('/');
         if name.starts_with('/') || name.is_empty() {
@@ -54,162 +55,89 @@ impl Scope {
     }
 
     /// Runs actions; the processes are added to `plans`.
-    pub(super) fn run(
-        &mut self,
-        entries: &[Placed],
-        viewers: &'static [Viewer],
-        plans: &mut Vec<NodePlan>,
-    ) -> Result<(), PlanError> {
+    pub(super) fn run(&mut self, entries: &[Placed], plans: &mut Vec<NodePlan>) -> Result<(), PlanError> {
         for Placed { entry, line } in entries {
-            let run = self.action(entry, viewers, plans).and_then(|()| distinct(plans));
+            let run = self.action(entry, plans).and_then(|()| distinct(plans));
             run.map_err(|fault| fault.in_line(*line))?;
         }
         Ok(())
     }
 
-    fn action(
-        &mut self,
-        entry: &Entry,
-        viewers: &'static [Viewer],
-        plans: &mut Vec<NodePlan>,
-    ) -> Result<(), PlanError> {
+    fn action(&mut self, entry: &Entry, plans: &mut Vec<NodePlan>) -> Result<(), PlanError> {
         match entry {
-            Entry::Arg(a) => {
-                if !self.variables.contains_key(&a.name) {
-                    let none =
-                        || PlanError(format!("arg {:?} has no default and no value was given", a.name));
-                    let default = self.text(&a.default.as_ref().ok_or_else(none)?.0)?;
-                    self.variables.insert(a.name.clone(), default);
-                }
-                let value = &self.variables[&a.name];
-                if !a.choice.is_empty() && !a.choice.iter().any(|c| c.value.0 == *value) {
-                    let choices = a.choice.iter().map(|c| c.value.0.as_str()).collect::<Vec<_>>().join(", ");
-                    return Err(PlanError(format!(
-                        "arg {:?} is {value:?}; it must be one of: {choices}",
-                        a.name
-                    )));
-                }
+            Entry::Arg(a) if !self.variables.contains_key(&a.name) => {
+                let none = || PlanError(format!("arg {:?} has no default and no value was given", a.name));
+                let default = self.optional(&a.default)?.ok_or_else(none)?;
+                self.variables.insert(a.name.clone(), default);
             }
-            Entry::Let(s) if self.holds((&s.if_, &s.unless))? => {
+            Entry::Let(s) if self.holds(&s.if_, &s.unless)? => {
                 let value = self.text(&s.value.0)?;
                 self.variables.insert(s.name.clone(), value);
             }
-            Entry::SetEnv(s) if self.holds((&s.if_, &s.unless))? => {
-                let value = self.text(&s.value.0)?;
-                self.environment.push((s.name.clone(), value));
+            Entry::SetEnv(s) if self.holds(&s.if_, &s.unless)? => {
+                self.environment.push((s.name.clone(), self.text(&s.value.0)?));
             }
-            Entry::SetParameter(s) if self.holds((&s.if_, &s.unless))? => {
-                let value = self.text(&s.value.0)?;
-                self.arguments.extend(["-p".to_owned(), format!("{}:={value}", s.name)]);
-            }
-            Entry::SetRemap(r) => {
-                let rule = format!("{}:={}", self.text(&r.from.0)?, self.text(&r.to.0)?);
-                self.arguments.extend(["-r".to_owned(), rule]);
-            }
-            Entry::PushRosNamespace(n) if self.holds((&n.if_, &n.unless))? => {
+            Entry::PushRosNamespace(n) if self.holds(&n.if_, &n.unless)? => {
                 self.namespace = self.below(&self.text(&n.namespace.0)?);
             }
-            Entry::Group(group) => self.group(group, viewers, plans)?,
-            Entry::Include(include) => {
-                return Err(PlanError(format!(
-                    "include {}: it is read with the file that has it",
-                    include.file
-                )));
+            Entry::Group(children) => self.clone().run(children, plans)?,
+            Entry::Include(i) if self.holds(&i.if_, &i.unless)? => {
+                let children = i.children.as_deref().unwrap_or_default();
+                self.run(children, plans).map_err(|fault| fault.included(&i.file))?;
             }
-            Entry::Executable(p) if self.holds((&p.if_, &p.unless))? => {
-                let fault = |what: &str| {
-                    PlanError(format!(
-                        "an executable has {what}; it has cmd, name, output, respawn, on_exit, env"
-                    ))
-                };
-                let cmd = p.cmd.as_deref().ok_or_else(|| fault("no cmd"))?;
-                let of_node =
-                    [&p.pkg, &p.exec, &p.namespace, &p.args, &p.ros_args].iter().any(|key| key.is_some());
-                if of_node || !p.param.is_empty() || !p.remap.is_empty() {
-                    return Err(fault("a key of a node"));
-                }
-                plans.push(self.executable(p, cmd, viewers)?);
-            }
-            Entry::Node(p) if self.holds((&p.if_, &p.unless))? => plans.push(self.node(p, viewers)?),
+            Entry::Executable(p) if self.holds(&p.if_, &p.unless)? => plans.push(self.executable(p)?),
+            Entry::Node(p) if self.holds(&p.if_, &p.unless)? => plans.push(self.node(p)?),
             _ => {}
         }
         Ok(())
     }
 
-    fn group(
-        &mut self,
-        group: &Group,
-        viewers: &'static [Viewer],
-        plans: &mut Vec<NodePlan>,
-    ) -> Result<(), PlanError> {
-        if !self.holds((&group.if_, &group.unless))? {
-            return Ok(());
-        }
-        let mut inner = self.clone();
-        let run = inner.run(&group.children, viewers, plans);
-        run.map_err(|fault| group.file.iter().fold(fault, |fault, file| fault.included(file)))?;
-        if group.scoped.is_some() && !self.holds((&group.scoped, &None))? {
-            *self = inner;
-        }
-        Ok(())
-    }
-
-    /// A node of this package, as `grainlab run` starts it.
-    fn node(&self, p: &Program, viewers: &'static [Viewer]) -> Result<NodePlan, PlanError> {
-        let [pkg, exec] = [("pkg", &p.pkg), ("exec", &p.exec)].map(|(key, text)| {
-            let text = text.as_ref().filter(|_| p.cmd.is_none());
-            self.text(
-                &text
-                    .ok_or_else(|| {
-                        PlanError(format!("a node has pkg, exec and no cmd; {key} or cmd is wrong"))
-                    })?
-                    .0,
-            )
-        });
-        let (pkg, exec) = (pkg?, exec?);
+    /// Returns a node of this package, as `grainlab run` starts it.
+    fn node(&self, p: &Node) -> Result<NodePlan, PlanError> {
+        let (pkg, exec) = (self.text(&p.pkg.0)?, self.text(&p.exec.0)?);
         if pkg != "grainlab" {
             return Err(PlanError(format!(
                 "node {exec} of the package `{pkg}`: only nodes of the package grainlab are started by pkg and exec; write an executable with its cmd"
             )));
         }
-        let split = |text: &Option<Text>| -> Result<Vec<String>, PlanError> {
-            let text = text.as_ref().map_or("", |t| t.0.as_str());
-            let all = words(text)
-                .ok_or_else(|| PlanError(format!("node {exec}: a quote in {text:?} is not closed")))?;
-            all.iter().map(|word| self.text(word)).collect()
-        };
-        let name = p.name.as_ref().map(|name| self.text(&name.0)).transpose()?;
-        let namespace = match &p.namespace {
-            Some(namespace) => self.below(&self.text(&namespace.0)?),
+        let name = self.optional(&p.name)?;
+        let namespace = match self.optional(&p.namespace)? {
+            Some(namespace) => self.below(&namespace),
             None => self.namespace.clone(),
         };
         let mut arguments = vec!["run".to_owned(), exec.clone()];
-        arguments.extend(split(&p.args)?);
+        if let Some(Text(text)) = &p.args {
+            let all = words(text)
+                .ok_or_else(|| PlanError(format!("node {exec}: a quote in {text:?} is not closed")))?;
+            for word in all {
+                arguments.push(self.text(&word)?);
+            }
+        }
         arguments.push("--ros-args".to_owned());
-        arguments.extend(split(&p.ros_args)?);
         let mut give = |flag: &str, rule: String| arguments.extend([flag.to_owned(), rule]);
         name.iter().for_each(|name| give("-r", format!("__node:={name}")));
         if !namespace.is_empty() {
             give("-r", format!("__ns:={namespace}"));
         }
-        self.arguments.chunks(2).for_each(|pair| give(&pair[0], pair[1].clone()));
-        for of in &p.param {
-            match (&of.name, &of.value, &of.from) {
+        for parameter in &p.param {
+            match (&parameter.name, &parameter.value, &parameter.from) {
                 (Some(name), Some(value), None) => give("-p", format!("{name}:={}", self.text(&value.0)?)),
                 (None, None, Some(file)) => give("--params-file", self.text(&file.0)?),
                 _ => return Err(PlanError(format!("node {exec}: a param has name and value, or from"))),
             }
         }
-        for of in &p.remap {
-            give("-r", format!("{}:={}", self.text(&of.from.0)?, self.text(&of.to.0)?));
+        for rule in &p.remap {
+            give("-r", format!("{}:={}", self.text(&rule.from.0)?, self.text(&rule.to.0)?));
         }
         let within = namespace.trim_start_matches('/').replace('/', "-");
         let own = name.unwrap_or_else(|| exec.clone());
         let name = if within.is_empty() { own } else { format!("{within}-{own}") };
-        self.process(p, name, Some(&exec), "grainlab".to_owned(), arguments, viewers)
+        let command = ("grainlab".to_owned(), arguments);
+        self.process([&p.output, &p.respawn, &p.on_exit], name, Some(&exec), command)
     }
 
-    fn executable(&self, p: &Program, cmd: &str, viewers: &'static [Viewer]) -> Result<NodePlan, PlanError> {
+    fn executable(&self, p: &Executable) -> Result<NodePlan, PlanError> {
+        let cmd = &p.cmd;
         let command = || {
             PlanError(format!(
                 "executable `{cmd}`: write `grainlab run NODE ...`, or a program with its arguments"
@@ -221,64 +149,52 @@ impl Scope {
             [program, ..] if program != "grainlab" && !program.is_empty() => None,
             _ => return Err(command()),
         };
-        let value = |name: &str| {
-            let value = self.variables.get(name)?;
+        let form = |value: &str| {
             // Parameters of nodes are YAML, in which a path is quoted; a third-party program gets the plain path.
             let plain =
                 || serde_json::from_str(value).unwrap_or_else(|_| value.trim_matches('\'').to_owned());
-            Some(if named.is_some() { value.clone() } else { plain() })
+            if named.is_some() { value.to_owned() } else { plain() }
         };
-        let known = || self.variables.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
         let words: Vec<String> =
-            words.iter().map(|word| substitute(word, value, known)).collect::<Result<_, _>>()?;
+            words.iter().map(|word| substitute(word, &self.variables, form)).collect::<Result<_, _>>()?;
         let (program, arguments) = (words[0].clone(), words[1..].to_vec());
         let by_itself = || {
             let file = std::path::Path::new(&program).file_stem();
             let stem = file.map_or_else(|| program.clone(), |f| f.to_string_lossy().into_owned());
             stem.to_ascii_lowercase().chars().map(|c| if is_plain(c) { c } else { '_' }).collect()
         };
-        let given = p.name.as_ref().map(|name| self.text(&name.0)).transpose()?;
-        let name = given.or_else(|| named.map(str::to_owned)).unwrap_or_else(by_itself);
-        self.process(p, name, named, program, arguments, viewers)
+        let name = self.optional(&p.name)?.or_else(|| named.map(str::to_owned)).unwrap_or_else(by_itself);
+        self.process([&p.output, &p.respawn, &p.on_exit], name, named, (program, arguments))
     }
 
     fn process(
         &self,
-        p: &Program,
+        [output, respawn, on_exit]: [&Option<Text>; 3],
         name: String,
         node: Option<&str>,
-        program: String,
-        arguments: Vec<String>,
-        viewers: &'static [Viewer],
+        (program, arguments): (String, Vec<String>),
     ) -> Result<NodePlan, PlanError> {
         if name.is_empty() || !name.chars().all(is_plain) {
             return Err(PlanError(format!(
                 "executable name {name:?}: use lower case letters, digits, _ and - (it names a file)"
             )));
         }
-        let text = |text: &Option<Text>| text.as_ref().map(|text| self.text(&text.0)).transpose();
-        let refuse = |key: &str, value: &str, allowed: &str| {
-            PlanError::of(&name, format!("{key}: {value:?} is not supported; use {allowed}"))
+        let one_of = |key: &str, text: &Option<Text>, allowed: &[&str]| match self.optional(text)? {
+            Some(value) if !allowed.contains(&value.as_str()) => {
+                let fault = format!("{key}: {value:?} is not supported; use {}", allowed.join(" or "));
+                Err(PlanError::of(&name, fault))
+            }
+            value => Ok(value),
         };
-        if let Some(output) = text(&p.output)?.filter(|o| !["screen", "log", "both"].contains(&o.as_str())) {
-            return Err(refuse("output", &output, "screen, log or both"));
-        }
-        let respawn = match text(&p.respawn)?.as_deref() {
-            None | Some("false" | "False") => false,
-            Some("true" | "True") => true,
-            Some(other) => return Err(refuse("respawn", other, "true or false")),
-        };
-        let node = node.map(|name| NodeKind::named(name, viewers)).transpose();
+        one_of("output", output, &["screen", "log", "both"])?;
+        let respawn = one_of("respawn", respawn, &["true", "false", "True", "False"])?;
+        let on_exit = one_of("on_exit", on_exit, &["shutdown"])?;
+        let node = node.map(NodeKind::named).transpose();
         let node = node.map_err(|unknown| PlanError::of(&name, format!("there is {unknown}")))?;
-        let on_exit = text(&p.on_exit)?;
-        if let Some(on_exit) = on_exit.as_deref().filter(|o| *o != "shutdown") {
-            return Err(refuse("on_exit", on_exit, "shutdown"));
-        }
-        let mut environment = self.environment.clone();
-        for of in &p.env {
-            environment.push((of.name.clone(), self.text(&of.value.0)?));
-        }
-        Ok(NodePlan { node, program, arguments, respawn, name, environment, ends_all: on_exit.is_some() })
+        let (respawn, ends_all) =
+            (respawn.is_some_and(|r| r.eq_ignore_ascii_case("true")), on_exit.is_some());
+        let environment = self.environment.clone();
+        Ok(NodePlan { node, program, arguments, respawn, name, environment, ends_all })
     }
 }
 

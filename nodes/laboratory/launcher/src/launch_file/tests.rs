@@ -1,30 +1,23 @@
 use super::*;
 use crate::agreement::names_of_run;
-use NodeKind::{AcousticProbe, DemSimulator, EmtInversion, FabricAnalyzer, Recorder, ServoController};
-use grainlab_msgs::topics;
-use grainlab_node_kit::{Exit, NodeError, ParameterSpec};
+use NodeKind::{
+    AcousticProbe, DemSimulator, EmtInversion, FabricAnalyzer, PackingPictures, Recorder, ServoController,
+};
 use std::path::Path;
 
 const DEFAULT: &str = BUILT_IN[0].1;
 const ACOUSTIC: &str = BUILT_IN[1].1;
-const VIEWERS: &[Viewer] = &[Viewer {
-    name: "window",
-    summary: "shows packings",
-    parameters: || vec![ParameterSpec::new("port", 1_i64, "port")],
-    topics: Some(&[topics::PACKING]),
-    build: |_, _| Err(NodeError::new(Exit::Failure, "no window".to_owned())),
-}];
 
 fn nodes(text: &str, values: &[(&'static str, &str)]) -> Result<Vec<NodePlan>, PlanError> {
     let values = values.iter().map(|(k, v)| (*k, (*v).to_owned())).collect();
-    LaunchFile::parse(text, Path::new("."))?.nodes(&values, VIEWERS)
+    LaunchFile::parse(text, Path::new("."))?.nodes(&values)
 }
 
 #[test]
 fn the_default_file_starts_one_of_each_node_on_the_demo() {
     let file = LaunchFile::parse(DEFAULT, Path::new(".")).unwrap();
     assert_eq!(file.default_of("scene"), Some("demo"));
-    let plans = file.nodes(&BTreeMap::new(), VIEWERS).unwrap();
+    let plans = file.nodes(&BTreeMap::new()).unwrap();
     let started: Vec<NodeKind> = plans.iter().map(|p| p.node.unwrap()).collect();
     assert_eq!(started, [Recorder, EmtInversion, FabricAnalyzer, ServoController, DemSimulator]);
     assert!(plans.iter().all(|p| p.respawn != [Recorder, DemSimulator].contains(&p.node.unwrap())));
@@ -33,7 +26,7 @@ fn the_default_file_starts_one_of_each_node_on_the_demo() {
 #[test]
 fn the_acoustic_file_is_the_default_one_with_a_probe_that_the_run_waits_for() {
     let file = LaunchFile::parse(ACOUSTIC, Path::new(".")).unwrap();
-    let (default, acoustic) = (nodes(DEFAULT, &[]).unwrap(), file.nodes(&BTreeMap::new(), VIEWERS).unwrap());
+    let (default, acoustic) = (nodes(DEFAULT, &[]).unwrap(), file.nodes(&BTreeMap::new()).unwrap());
     let (probe, others): (Vec<_>, Vec<_>) = acoustic.iter().partition(|p| p.is(AcousticProbe));
     let [probe] = probe.as_slice() else { panic!("{} probes", probe.len()) };
     assert!(probe.respawn && probe.arguments.contains(&"speed_noise:=0.003".to_owned()), "{probe:?}");
@@ -97,7 +90,7 @@ fn what_is_not_supported_is_refused_and_named() {
         (one("executable: {cmd: grainlab run recorder, name: ''}"), "lower case"),
         (one("executable: {cmd: grainlab run recorder}\n- executable: {cmd: grainlab run recorder}"), "two"),
         (one("arg: {name: scene}"), "line 2: arg \"scene\" has no default"),
-        (one("group:\n  - arg: {name: x, default: a}\n  - node: {pkg: grainlab}"), "line 4: a node has pkg"),
+        (one("group:\n  - arg: {name: x, default: a}\n  - node: {pkg: grainlab}"), "missing field `exec`"),
         (one("executable: {cmd: sleep 1}\n- executable: {cmd: sleep 2}"), "line 3: two executables"),
         ("lunch: []".to_owned(), "lunch"),
     ] {
@@ -106,6 +99,41 @@ fn what_is_not_supported_is_refused_and_named() {
     }
     let error = nodes("launch: []", &[("seed", "3")]).unwrap_err();
     assert!(error.to_string().contains("does not declare the arg"), "{error}");
+    let misspelt = nodes(&one("executable: {cmd: grainlab run recorder, respwan: true}"), &[]).unwrap_err();
+    assert!(!misspelt.to_string().contains("ros2 launch"), "ROS 2 does not know it either: {misspelt}");
+}
+
+#[test]
+fn values_that_repeat_themselves_are_refused_before_they_fill_the_memory() {
+    let twice = "- let: {name: a, value: $(var a)$(var a)}\n".repeat(40);
+    let file = format!("launch:\n- let: {{name: a, value: x}}\n{twice}");
+    let error = nodes(&file, &[]).unwrap_err().to_string();
+    assert!(error.contains("more than 4096 bytes") && error.starts_with("line 15: "), "{error}");
+    let long = "x".repeat(5_000);
+    let file = format!("launch:\n- let: {{name: a, value: {long}}}\n- let: {{name: b, value: $(var a)}}\n");
+    assert!(nodes(&file, &[]).unwrap_err().to_string().contains("more than 4096 bytes"));
+}
+
+#[test]
+fn what_only_ros_2_launch_has_is_refused_with_its_line_and_that_advice() {
+    let argument = |key: &str| format!("launch:\n- arg: {{name: a, default: b}}\n- {key}");
+    for (text, needle) in [
+        ("arg: {name: x, default: y, choice: [{value: y}]}", "choice"),
+        ("group: {scoped: false, children: []}", "sequence"),
+        ("set_parameter: {name: x, value: y}", "set_parameter"),
+        ("set_remap: {from: x, to: y}", "set_remap"),
+        ("timer: {period: 3}", "timer"),
+        ("executable: {cmd: sleep 1, shell: true}", "shell"),
+        ("executable: {cmd: sleep 1, env: [{name: x, value: y}]}", "env"),
+        ("node: {pkg: grainlab, exec: emt_inversion, ros_args: --log-level info}", "ros_args"),
+        ("let: {name: x, value: $(env HOME)}", "$(env HOME)"),
+        ("let: {name: x, value: $(find-pkg-share grainlab)}", "find-pkg-share"),
+        ("include: {file: $(find-pkg-share grainlab)/launch/demo.launch.yaml}", "find-pkg-share"),
+    ] {
+        let error = nodes(&argument(text), &[]).expect_err(text).to_string();
+        assert!(error.contains("line 3") && error.contains(needle), "{text}: {error}");
+        assert!(error.ends_with("`grainlab run NODE` as executable"), "{text}: {error}");
+    }
 }
 
 #[test]
@@ -187,27 +215,23 @@ fn a_run_may_have_several_inversions_and_one_of_everything_else() {
 }
 
 #[test]
-fn a_viewer_is_started_and_checked_like_a_node_of_the_laboratory_if_the_program_has_it() {
+fn pictures_are_started_and_checked_like_every_node_and_the_bridge_of_earlier_versions_gets_advice() {
     let with = |arguments: &str| {
-        format!("{DEFAULT}- executable: {{cmd: 'grainlab run window --ros-args {arguments}'}}\n")
+        format!("{DEFAULT}- executable: {{cmd: 'grainlab run packing_pictures --ros-args {arguments}'}}\n")
     };
-    let plans = nodes(&with("-p port:=2"), &[]).unwrap();
-    let (window, kind) = (plans.last().unwrap(), NodeKind::Viewer(&VIEWERS[0]));
-    assert!(window.is(kind) && window.name == "window", "{window:?}");
-    assert_eq!(window.check_parameters(), Ok(()));
+    let plans = nodes(&with("-p use_sim_time:=true"), &[]).unwrap();
+    let pictures = plans.last().unwrap();
+    assert!(pictures.is(PackingPictures) && pictures.name == "packing_pictures", "{pictures:?}");
+    assert_eq!(pictures.check_parameters(), Ok(()));
     let misspelt = nodes(&with("-p prot:=2"), &[]).unwrap();
     assert!(misspelt.last().unwrap().check_parameters().unwrap_err().to_string().contains("prot"));
     let apart = names_of_run(&nodes(&with("-r packing:=grains"), &[]).unwrap()).unwrap_err().to_string();
-    assert!(apart.contains("executable window: the topic packing is /grains there"), "{apart}");
-    let twice = format!("{}- executable: {{cmd: grainlab run window, name: second}}\n", with(""));
-    let twice = nodes(&twice, &[]).unwrap_err();
-    assert_eq!(twice, PlanError::count(kind, 2));
-    let without = LaunchFile::parse(&with(""), Path::new("."))
-        .unwrap()
-        .nodes(&BTreeMap::new(), &[])
-        .unwrap_err()
-        .to_string();
-    assert!(without.contains("executable window: there is no node \"window\"; there are: dem_"), "{without}");
+    assert!(apart.contains("executable packing_pictures: the topic packing is /grains there"), "{apart}");
+    let twice = format!("{}- executable: {{cmd: grainlab run packing_pictures, name: second}}\n", with(""));
+    assert_eq!(nodes(&twice, &[]).unwrap_err(), PlanError::count(PackingPictures, 2));
+    let removed = with("").replace("packing_pictures", "foxglove_bridge");
+    let removed = nodes(&removed, &[]).unwrap_err().to_string();
+    assert!(removed.contains("line ") && removed.contains("open a recording in Foxglove"), "{removed}");
 }
 
 #[test]
@@ -313,4 +337,13 @@ fn args_that_the_launcher_sets_are_declared_and_handed_on() {
     }
     let error = check(&DEFAULT.replace("-p output:=$(var out)", "")).unwrap_err();
     assert!(error.contains("executable recorder: its parameter output"), "{error}");
+}
+
+#[test]
+fn an_included_file_that_is_too_large_is_refused_before_it_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let large = folder.path().join("large.launch.yaml");
+    std::fs::write(&large, "#".repeat(2 << 20)).unwrap();
+    let error = nodes(&format!("launch:\n- include: {{file: {}}}\n", large.display()), &[]).unwrap_err();
+    assert!(error.to_string().contains("more than 1048576 bytes"), "{error}");
 }

@@ -91,7 +91,6 @@ fn losses_of_a_topic_of_any_type_are_counted_from_its_first_message() {
         scene: None,
         whole_run: false,
         writer: WriterOptions::default(),
-        snapshot: None,
         append: false,
     };
     let result = ResultSlot::default();

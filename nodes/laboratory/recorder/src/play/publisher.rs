@@ -1,5 +1,6 @@
 //! The publishers of a playback.
 
+use super::watch::Watch;
 use grainlab_console::{Failure, say};
 use grainlab_msgs::{Topic, topics};
 use grainlab_node_kit::{BulkPublisher, Bus, BusError, DdsBus, PublisherId, Wake};
@@ -10,13 +11,14 @@ use std::time::Duration;
 /// Time for all subscriptions to be discovered after the first.
 const SETTLE: Duration = Duration::from_millis(1000);
 
-/// The publisher of one topic.
 pub(super) struct TopicPublisher {
     /// Name on the bus, behind a remap.
     name: String,
     id: PublisherId,
     /// Packings of any length: large ones in parts.
     bulk: Option<BulkPublisher>,
+    sent: u64,
+    watch: Watch,
 }
 
 impl TopicPublisher {
@@ -24,7 +26,33 @@ impl TopicPublisher {
         match &mut self.bulk {
             None => bus.publish(self.id, body).map(|_| ()),
             Some(bulk) => bulk.publish(bus, body),
-        }
+        }?;
+        self.sent += 1;
+        Ok(())
+    }
+
+    /// The name on the bus.
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
+    pub(super) fn sent(&self) -> u64 {
+        self.sent
+    }
+
+    /// Looks at the acknowledgements.
+    pub(super) fn look(&mut self, bus: &DdsBus) {
+        self.watch.look(bus.now(), self.sent, bus.unacknowledged(self.id), bus.readers(self.id));
+    }
+
+    /// The acknowledgements at the last look.
+    pub(super) fn watch(&self) -> &Watch {
+        &self.watch
+    }
+
+    /// Number of large messages that a subscriber did not receive.
+    pub(super) fn left_behind(&self) -> u64 {
+        self.bulk.as_ref().map_or(0, BulkPublisher::left_behind)
     }
 
     /// Sends parts of a large message; true if none is in transit.
@@ -65,9 +93,17 @@ pub(super) fn offer(
             name,
             id: bulk.id(),
             bulk: Some(bulk),
+            sent: 0,
+            watch: Watch::default(),
         })
     } else {
-        bus.advertise(&topic).map(|id| TopicPublisher { name, id, bulk: None })
+        bus.advertise(&topic).map(|id| TopicPublisher {
+            name,
+            id,
+            bulk: None,
+            sent: 0,
+            watch: Watch::default(),
+        })
     };
     match publisher {
         Err(BusError::Name(error)) => Ok(Err(error.to_string())),
@@ -83,7 +119,8 @@ pub(super) fn pause(bus: &mut DdsBus, time: Duration) {
     }
 }
 
-/// Waits until every topic has the readers it needs and no more appear for a short time; false on a signal.
+/// Waits until every topic has the readers it needs, these know its publisher, and no more appear for a short time; false on a
+/// signal.
 pub(super) fn wait_for_readers(
     bus: &mut DdsBus,
     publishers: &TopicPublishers,
@@ -99,7 +136,8 @@ pub(super) fn wait_for_readers(
         if counts != known {
             (known, since) = (counts, now);
         }
-        let complete = known.iter().all(|n| *n >= needed) && now - since >= SETTLE;
+        let is_known = || publishers.values().all(|p| bus.is_known_to_readers(p.id));
+        let complete = known.iter().all(|n| *n >= needed) && now - since >= SETTLE && is_known();
         if complete || now >= end {
             let lonely = publishers.values().zip(&known).filter(|(_, n)| **n < needed);
             let lonely: BTreeSet<&str> = lonely.map(|(publisher, _)| publisher.name.as_str()).collect();

@@ -11,6 +11,8 @@ use std::time::Duration;
 
 /// Pause before the next attempt to send a message while a reader is slow.
 const HOLD: Duration = Duration::from_millis(5);
+/// Period at which the acknowledgements are looked at while messages are sent.
+const LOOK: Duration = Duration::from_millis(50);
 /// Maximum time until a key is noticed.
 const KEYS: Duration = Duration::from_millis(30);
 
@@ -20,12 +22,13 @@ pub(super) struct Session<'a> {
     pub(super) publishers: &'a mut TopicPublishers,
     pub(super) keys: Option<Keys>,
     pub(super) clock: Option<ClockPublisher>,
-    /// Number of messages sent.
     pub(super) sent: u64,
     /// Messages of a part of the recording whose definition is another one than that of their topic.
     pub(super) unread: u64,
     /// Total delay, because readers were slow.
     pub(super) late: Duration,
+    /// Time of the next look at the acknowledgements.
+    pub(super) next_look: Duration,
 }
 
 /// Publishes the time of the recording.
@@ -59,47 +62,57 @@ impl ClockPublisher {
     }
 }
 
-/// Reason for an early end of a playback.
-enum Ended {
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Ended {
+    /// Every message was sent.
+    Done,
     Signal,
     Key,
+    /// A subscriber acknowledges nothing any longer.
+    Stuck,
 }
 
 impl Session<'_> {
-    /// Sends each message when it is due; false on a signal. Returns when every message sent in parts is complete at every
-    /// active reader.
-    pub(super) fn play(&mut self, player: &mut Player<'_>) -> Result<bool, Failure> {
+    /// Sends each message when it is due. Returns when every message sent in parts is complete at every active reader.
+    pub(super) fn play(&mut self, player: &mut Player<'_>) -> Result<Ended, Failure> {
         let ended = self.run(player)?;
         self.late += player.slipped();
-        Ok(!matches!(ended, Some(Ended::Signal)))
+        Ok(ended)
     }
 
-    /// True if no other round of a loop begins: after a signal or the key `q`.
-    pub(super) fn is_over(&self, finished: bool) -> bool {
-        !finished || self.keys.as_ref().is_some_and(Keys::is_over)
+    /// True if no other round of a loop begins: after a signal, the key `q`, or a subscriber that stopped.
+    pub(super) fn is_over(&self, ended: Ended) -> bool {
+        ended != Ended::Done || self.keys.as_ref().is_some_and(Keys::is_over)
     }
 
-    fn run(&mut self, player: &mut Player<'_>) -> Result<Option<Ended>, Failure> {
+    fn run(&mut self, player: &mut Player<'_>) -> Result<Ended, Failure> {
         loop {
             if self.follow_keys(player)? {
-                return Ok(Some(Ended::Key));
+                return Ok(Ended::Key);
             }
             let mut idle = true;
+            let now = self.bus.now();
+            let looks = now >= self.next_look;
             for publisher in self.publishers.values_mut() {
                 idle &= publisher.advance(self.bus)?;
+                if looks {
+                    publisher.look(self.bus);
+                }
             }
-            let now = self.bus.now();
+            if looks {
+                self.next_look = now + LOOK;
+            }
             let mut wait = match player.poll(now) {
-                Play::Done if idle => return Ok(None),
+                Play::Done if idle => return Ok(Ended::Done),
                 // Without keys nobody can continue it.
-                Play::Paused if idle && self.keys.is_none() => return Ok(None),
+                Play::Paused if idle && self.keys.is_none() => return Ok(Ended::Done),
                 Play::Done => BulkPublisher::patience(),
                 Play::Paused => KEYS.min(BulkPublisher::patience()),
-                Play::Wait(time) if idle => time,
+                Play::Wait(time) if idle => time.min(LOOK),
                 Play::Wait(time) => time.min(BulkPublisher::patience()),
                 Play::Send(message) => {
-                    if !self.send(&message)? {
-                        return Ok(Some(Ended::Signal));
+                    if let Some(ended) = self.send(&message)? {
+                        return Ok(ended);
                     }
                     Duration::ZERO
                 }
@@ -111,30 +124,35 @@ impl Session<'_> {
                 wait = wait.min(KEYS);
             }
             if self.bus.wait(wait) == Wake::Shutdown {
-                return Ok(Some(Ended::Signal));
+                return Ok(Ended::Signal);
             }
         }
     }
 
-    /// Sends a message, waiting for slow readers; false on a signal.
-    fn send(&mut self, message: &Message) -> Result<bool, Failure> {
-        let Some(publisher) = self.publishers.get_mut(&message.channel.topic) else { return Ok(true) };
+    /// Sends a message, waiting for slow readers; returns the reason if it is not sent.
+    fn send(&mut self, message: &Message) -> Result<Option<Ended>, Failure> {
+        let Some(publisher) = self.publishers.get_mut(&message.channel.topic) else { return Ok(None) };
         let Ok(body) = message.own_bytes() else {
             self.unread += 1;
-            return Ok(true);
+            return Ok(None);
         };
         loop {
             match publisher.publish(self.bus, &body) {
                 Ok(()) => break,
-                Err(BusError::Full { .. }) => {}
+                Err(BusError::Full { .. }) => {
+                    publisher.look(self.bus);
+                    if publisher.watch().is_stuck(self.bus.now()) {
+                        return Ok(Some(Ended::Stuck));
+                    }
+                }
                 Err(error) => return Err(Failure::failed(error)),
             }
             if self.bus.wait(HOLD) == Wake::Shutdown {
-                return Ok(false);
+                return Ok(Some(Ended::Signal));
             }
         }
         self.sent += 1;
-        Ok(true)
+        Ok(None)
     }
 
     /// Does what the keys say; true if one ends the playback.

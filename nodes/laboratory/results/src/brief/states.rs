@@ -4,7 +4,7 @@ use crate::findings::Findings;
 use crate::inference::{Inference, Origin, by_origin};
 use crate::packing_text::{eps, moduli, stress_ratio};
 use crate::read_back::InvertedPacking;
-use grainlab_console::{Table, count, fixed};
+use grainlab_console::{Table, count, fixed, three_digits};
 use grainlab_core::results::InferredQuantity;
 use std::collections::BTreeSet;
 
@@ -33,7 +33,7 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
     };
     for state in &states[left_out..] {
         let r = &state.packing.report;
-        let [g12, _, theta] = moduli(r).map(|m| fixed(m, 1));
+        let [g12, _, theta] = moduli(r).map(|m| three_digits(m, 1));
         if g12 != "-" {
             note("G12 and Theta in MPa; est.: estimated".to_owned());
         } else {
@@ -41,7 +41,7 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
         }
         let packing = [
             state.packing.step.to_string(),
-            format!("{:.1}", r.pressure() / 1e3),
+            three_digits(Some(r.pressure() / 1e3), 1),
             stress_ratio(r),
             format!("{:.4}", r.solid_fraction),
             format!("{:.3}", r.contacts.coordination),
@@ -103,4 +103,27 @@ fn estimated(best: Option<&Inference>, unknown: &str) -> [String; 4] {
     let [k, z, eps] = [InferredQuantity::K, InferredQuantity::Z, InferredQuantity::Eps]
         .map(|q| fixed(b.values[q], q.digits()));
     [k, z, eps, by]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measured_packing::tests::{lattice, measured};
+
+    /// A lattice of grains with the modulus of a gel.
+    #[test]
+    fn moduli_and_pressure_of_soft_grains_keep_three_digits_in_the_line_of_a_state() {
+        let mut soft = lattice(true);
+        soft.material.shear_modulus = 1e4;
+        soft.contacts.iter_mut().for_each(|c| c.normal_force *= 1e-4);
+        let packing = measured(&soft);
+        let [g12, _, theta] = moduli(&packing.report);
+        let values = [g12, theta, Some(packing.report.pressure() / 1e3)];
+        let state =
+            InvertedPacking { packing, acoustic: None, further_acoustic: Vec::new(), results: Vec::new() };
+        let text = lines(&[state]).join("\n");
+        for value in values {
+            assert!(value.unwrap() < 0.01 && text.contains(&three_digits(value, 1)), "{value:?}: {text}");
+        }
+    }
 }

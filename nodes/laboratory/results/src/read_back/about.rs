@@ -3,7 +3,7 @@
 use crate::inference::{Inference, Origin};
 use crate::measurements::{Identity, Measurement, Measurements};
 use grainlab_core::Packing;
-use grainlab_core::results::PackingReport;
+use grainlab_core::results::{PackingReport, geometry_warnings};
 use grainlab_experiment::{EngineProgram, PathPosition, engine_program};
 use grainlab_msgs::boundary::{BoundaryError, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::builtin_interfaces::Time;
@@ -44,6 +44,8 @@ pub(super) struct About {
     pub(super) engine: Option<EngineProgram>,
     /// Number of its grains and of its contacts.
     pub(super) packing: Option<(usize, usize)>,
+    /// Warnings about its geometry, which the report does not have; of packings at the ends of phases alone.
+    geometry: Vec<String>,
     stamp: Option<Time>,
     pub(super) report: Option<PackingReport>,
     report_stamp: Option<Time>,
@@ -73,13 +75,13 @@ impl About {
         self.packing.is_some() && (self.step > 0 || self.stamp == Some(identity.stamp()))
     }
 
-    /// Notes on several results of one kind.
+    /// Notes on the geometry of the packing, and on several results of one kind.
     pub(super) fn notes(&self) -> Vec<String> {
         let of_reports = (self.reports_differ && self.disputed_by.is_none()).then(|| {
             "different reports of this packing were sent: that of the last is the one counted".to_owned()
         });
         let confused = self.data.iter().filter_map(|(topic, data)| data.confusion(topic));
-        of_reports.into_iter().chain(confused).collect()
+        self.geometry.iter().cloned().chain(of_reports).chain(confused).collect()
     }
 
     /// That two processes reported this packing differently.
@@ -108,10 +110,16 @@ impl About {
             .collect()
     }
 
-    /// Estimates from data about this packing, and from data that are not about it, in the order of arrival.
+    /// Estimates from data about this packing, and from data that are not about it. Those from one topic by one node are in the order
+    /// of arrival, and topics and nodes in a fixed order: which node answers first depends on timing.
     pub(super) fn results(&mut self) -> (Vec<Inference>, Vec<Inference>) {
         let (mut own, mut others) = (Vec::new(), Vec::new());
-        for answer in std::mem::take(&mut self.answers) {
+        let mut answers = std::mem::take(&mut self.answers);
+        answers.sort_by_cached_key(|answer| {
+            let by = answer.estimates.first().and_then(|found| found.origin.by.clone());
+            (answer.source != topics::PACKING_REPORT.name, answer.source.clone(), by.is_none(), by)
+        });
+        for answer in answers {
             let known = self.data.iter().find(|(topic, _)| **topic == answer.source);
             let known = known.map(|(_, known)| known);
             let (list, label) = if self.is_of_packing(&answer.identity) {
@@ -169,6 +177,9 @@ pub(super) fn enter(
             about.engine = engine_program(&message.run_state);
             about.stamp = Some(message.header.stamp);
             about.packing = Some((packing.grains(), packing.contacts.len()));
+            if !about.is_within_phase() {
+                about.geometry = geometry_warnings(&packing);
+            }
             Ok(packing.step)
         }
         name if name == topics::PACKING_REPORT.name => {

@@ -82,7 +82,6 @@ impl Made {
     }
 }
 
-/// The message of the report of a packing.
 fn report(packing: &Packing) -> msg::PackingReport {
     packing_report_message(packing_header(packing), &measured(packing).report).unwrap()
 }
@@ -131,6 +130,22 @@ fn a_run_is_read_back_and_one_measurement_has_no_label() {
     assert!(state.results.iter().all(|r| r.origin.measurement.is_none()));
     let json = serde_json::to_value(state).unwrap();
     assert!(json.get("further_acoustic").is_none() && json["acoustic"].get("measurement").is_none());
+}
+
+/// The report of a packing does not have its geometry.
+#[test]
+fn doubts_about_the_geometry_of_a_recorded_packing_are_read_back_with_it() {
+    let (mut deep, overlap) = (lattice(true), 0.12 * 2e-4);
+    deep.cell = grainlab_core::Cell::cube(2e-4 - overlap).unwrap();
+    let normal_force = deep.material.normal_force(0.5e-4, overlap);
+    deep.contacts.iter_mut().for_each(|c| (c.overlap, c.normal_force) = (overlap, normal_force));
+    let mut made = Made::new();
+    made.state(&deep);
+    let back = made.read();
+    let found = &back.states[0].packing;
+    assert!(found.report.elasticity.as_ref().is_err_and(|none| none.is_fault()), "{:?}", back.complaints);
+    let warnings = found.warnings.join("; ");
+    assert!(warnings.contains("3 of 3 contacts overlap by more than 10 %"), "{warnings}");
 }
 
 #[test]
@@ -221,6 +236,31 @@ fn data_without_an_answer_are_counted() {
         back.complaints,
         ["2 of 5 wave_speeds of step 7 have no estimate of their own in the recording"]
     );
+}
+
+#[test]
+fn estimates_are_listed_by_their_data_whichever_were_inverted_first() {
+    let packing = later(7, 0.0);
+    let made = |speeds_first: bool| {
+        let mut made = Made::new();
+        made.write("/packing", &to_cdr(&packing_message(&packing, "made", Vec::new())));
+        let (report, speeds) = (report(&packing), shot(&packing, "bench", 300.0));
+        made.write("/packing_report", &to_cdr(&report));
+        made.write("/wave_speeds", &to_cdr(&speeds));
+        let mut answers = [
+            microstructure_of_report(&report, &Settings::default()),
+            Some(microstructure_of_speeds(&speeds, &Settings::default())),
+        ];
+        if speeds_first {
+            answers.reverse();
+        }
+        answers.into_iter().for_each(|answer| made.answer(answer));
+        made.read().states.remove(0).results
+    };
+    let results = made(false);
+    assert_eq!(results.first().unwrap().origin.source.as_deref(), Some("packing_report"));
+    assert_eq!(results.last().unwrap().origin.source.as_deref(), Some("wave_speeds"));
+    assert_eq!(made(true), results);
 }
 
 #[test]

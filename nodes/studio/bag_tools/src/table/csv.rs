@@ -1,12 +1,11 @@
 //! Tables as CSV files: fields as `stress.xx`, short arrays as `rate[0]`.
 
 use super::shape::{MOST_COLUMNS, Shape, time_columns};
+use crate::appended::Appended;
 use grainlab_any_message::{Array, Message, Value};
-use std::fs::File;
 use std::io;
 use std::path::Path;
 
-/// The shape of rows, and the names of their columns.
 #[derive(Clone, Debug)]
 pub(crate) struct Columns {
     names: Vec<String>,
@@ -17,7 +16,7 @@ pub(crate) struct Columns {
 
 /// A CSV file with a header, written row by row.
 pub(crate) struct CsvTable {
-    writer: csv::Writer<File>,
+    writer: csv::Writer<Appended>,
     columns: Columns,
 }
 
@@ -62,10 +61,10 @@ impl Columns {
 }
 
 impl CsvTable {
-    pub(crate) fn create(path: &Path, columns: Columns) -> io::Result<Self> {
-        // The writer looks through the rest of a value again for each buffer that it fills.
+    /// Begins the file; `buffer` bytes are collected before they are written to it.
+    pub(crate) fn create(path: &Path, columns: Columns, buffer: usize) -> io::Result<Self> {
         let mut writer =
-            csv::WriterBuilder::new().buffer_capacity(1 << 21).from_writer(File::create_new(path)?);
+            csv::WriterBuilder::new().buffer_capacity(buffer).from_writer(Appended::create(path)?);
         writer.write_record(&columns.names)?;
         Ok(Self { writer, columns })
     }
@@ -87,7 +86,6 @@ fn is_json(longest: usize, widest: usize) -> bool {
     longest == 0 || longest > widest
 }
 
-/// Adds the names of the columns of a shape.
 fn name_columns(shape: &Shape, name: &str, widest: usize, names: &mut Vec<String>) -> Option<()> {
     if names.len() >= MOST_COLUMNS {
         return None;
@@ -154,7 +152,7 @@ mod tests {
         ] {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join("t.csv");
-            let mut table = CsvTable::create(&path, columns.clone()).unwrap();
+            let mut table = CsvTable::create(&path, columns.clone(), 1 << 10).unwrap();
             table.row([1, 2], &message).unwrap();
             table.finish().unwrap();
             assert_eq!(std::fs::read_to_string(path).unwrap().lines().nth(1).unwrap(), expected);

@@ -23,7 +23,6 @@ pub(crate) enum Shape {
     Array(usize, Box<Shape>),
 }
 
-/// Maximum number of columns of a table.
 pub(crate) const MOST_COLUMNS: usize = 20_000;
 
 impl Shape {

@@ -1,10 +1,9 @@
 //! Packings with contacts other than those of the calibration: the corrections of the laws, and the preparations of the prior.
 
-use crate::csv;
+use crate::ours;
 use grainlab_core::Material;
-use grainlab_emt::{
-    Calibration, ContactCorrections, ContactKind, Invariants, Moduli, NetworkState, SeriesPrior,
-};
+use grainlab_emt::{ContactCorrections, ContactKind, Invariants, Moduli, NetworkState, SeriesPrior};
+use grainlab_testkit::golden::Table;
 use nalgebra::{DMatrix, DVector};
 
 /// One packing under one contact law.
@@ -33,8 +32,8 @@ impl Network {
 }
 
 fn networks() -> Vec<Network> {
-    let t = csv::read("ensembles/contacts.csv");
-    let laws = Calibration::builtin("grainlab").unwrap().network().unwrap();
+    let t = Table::read("ensembles/contacts.csv");
+    let laws = ours().network().unwrap();
     let one = |row: &Vec<String>| {
         let n = |column| t.number(row, column);
         let moduli = ["g12_pa", "g13_pa", "theta_pa", "ti_c11_pa", "ti_c33_pa", "ti_c13_pa"];

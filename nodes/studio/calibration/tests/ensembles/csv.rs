@@ -4,41 +4,15 @@ use grainlab_calibration::CalibrationSample;
 use grainlab_core::Material;
 use grainlab_core::results::StrainRatios;
 use grainlab_emt::{Moduli, Observation, StrainRatio};
-use std::path::Path;
-
-/// Header and rows of a file in `tests/golden`.
-pub(crate) struct Table {
-    header: Vec<String>,
-    pub(crate) rows: Vec<Vec<String>>,
-}
-
-pub(crate) fn read(name: &str) -> Table {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../tests/golden").join(name);
-    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    let mut lines =
-        text.lines().filter(|l| !l.starts_with('#')).map(|l| l.split(',').map(String::from).collect());
-    Table { header: lines.next().unwrap(), rows: lines.collect() }
-}
-
-impl Table {
-    pub(crate) fn cell<'a>(&self, row: &'a [String], column: &str) -> &'a str {
-        let at = self.header.iter().position(|h| h == column);
-        &row[at.unwrap_or_else(|| panic!("no column {column}"))]
-    }
-
-    pub(crate) fn number(&self, row: &[String], column: &str) -> f64 {
-        self.cell(row, column).parse().unwrap()
-    }
-}
+use grainlab_testkit::golden::Table;
 
 /// The packings of one ensemble; the path is the recipe.
 pub(crate) fn samples(name: &str) -> Vec<CalibrationSample> {
-    let t = read(&format!("ensembles/{name}"));
-    let has = |column: &str| t.header.iter().any(|h| h == column);
+    let t = Table::read(&format!("ensembles/{name}"));
     let sample = |row: &Vec<String>| {
         let number = |column| t.number(row, column);
         // Without these columns: isotropic stress, equal grains.
-        let optional = |column| if has(column) { t.number(row, column) } else { 0.0 };
+        let optional = |column| if t.has(column) { t.number(row, column) } else { 0.0 };
         let preparation = t.cell(row, "preparation").to_owned();
         let moduli = ["g12_pa", "g13_pa", "theta_pa", "ti_c11_pa", "ti_c33_pa", "ti_c13_pa"];
         CalibrationSample {
@@ -72,7 +46,7 @@ pub(crate) fn samples(name: &str) -> Vec<CalibrationSample> {
 
 /// The states of the paper's Table III, each with the ε counted in its simulation.
 pub(crate) fn paper_rows() -> Vec<(Observation, f64)> {
-    let t = read("paper_rows.csv");
+    let t = Table::read("paper_rows.csv");
     let row = |row: &Vec<String>| {
         let n = |column| t.number(row, column);
         let g = StrainRatio::given(n("gamma_over_delta"));

@@ -6,26 +6,27 @@ use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{Calibration, EmtError, Relaxed, Status, StrainRatioSource};
 use grainlab_emt::{Estimate, Model};
 use std::collections::BTreeSet;
+use std::sync::LazyLock;
 
-const QUANTITIES: [InferredQuantity; 4] =
+pub(crate) const QUANTITIES: [InferredQuantity; 4] =
     [InferredQuantity::Z, InferredQuantity::K, InferredQuantity::Eps, InferredQuantity::EpsStiffness];
 
 /// Every packing of the three files of the calibration.
-pub(crate) struct Packings {
+struct Packings {
     isotropic: Vec<CalibrationSample>,
     anisotropic: Vec<CalibrationSample>,
-    pub(crate) others: Vec<CalibrationSample>,
+    others: Vec<CalibrationSample>,
 }
 
 impl Packings {
-    pub(crate) fn read() -> Self {
+    fn read() -> Self {
         let [isotropic, anisotropic, others] =
             ["isotropic.csv", "anisotropic.csv", "wide.csv"].map(csv::samples);
         Self { isotropic, anisotropic, others }
     }
 
     /// The calibration from those kept.
-    pub(crate) fn calibration(&self, keep: impl Fn(&CalibrationSample) -> bool) -> Calibration {
+    fn calibration(&self, keep: impl Fn(&CalibrationSample) -> bool) -> Calibration {
         let kept = |all: &[CalibrationSample]| all.iter().filter(|s| keep(s)).cloned().collect::<Vec<_>>();
         let [isotropic, anisotropic, others] =
             [&self.isotropic, &self.anisotropic, &self.others].map(|all| kept(all));
@@ -76,18 +77,29 @@ fn covered(all: &[&Judged], i: usize) -> f64 {
     inside as f64 / all.len() as f64
 }
 
-/// The packings of `wide.csv`, each with laws learned without its recipe, and the number of those without an answer.
+/// The packings of `wide.csv` by recipe, with the laws learned without that recipe.
+pub(crate) fn by_recipe() -> &'static [(Vec<CalibrationSample>, Calibration)] {
+    static ALL: LazyLock<Vec<(Vec<CalibrationSample>, Calibration)>> = LazyLock::new(|| {
+        let packings = Packings::read();
+        let recipes: BTreeSet<&str> = packings.others.iter().map(|s| s.preparation.as_str()).collect();
+        let of = |recipe: &str| {
+            let own = packings.others.iter().filter(|s| s.preparation == recipe).cloned().collect();
+            (own, packings.calibration(|s| s.preparation != recipe))
+        };
+        recipes.into_iter().map(of).collect()
+    });
+    &ALL
+}
+
+/// The packings of `wide.csv`, each judged by [`by_recipe`], and the number of those without an answer.
 fn left_out_by_recipe() -> (Vec<Judged>, usize) {
-    let packings = Packings::read();
-    let recipes: BTreeSet<&str> = packings.others.iter().map(|s| s.preparation.as_str()).collect();
     let (mut all, mut unknown) = (Vec::new(), 0);
-    for recipe in recipes {
-        let calibration = packings.calibration(|s| s.preparation != recipe);
-        for s in packings.others.iter().filter(|s| s.preparation == recipe) {
-            match judged(s, &calibration) {
+    for (packings, calibration) in by_recipe() {
+        for s in packings {
+            match judged(s, calibration) {
                 Ok(found) => all.push(found),
                 Err(EmtError::TooFar { .. } | EmtError::NoCoordination { .. }) => unknown += 1,
-                Err(e) => panic!("{recipe}: {e}"),
+                Err(e) => panic!("{}: {e}", s.preparation),
             }
         }
     }

@@ -16,6 +16,7 @@ mod stress_and_fabric;
 use grainlab_calibration::{CalibrationSample, learn, with_errors};
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{Calibration, Moduli, Modulus, Observation, StrainRatioSource};
+use left_out::truth;
 
 /// Packings not used in any calibration: 24 seeds, 4 frictions, 4 pressures.
 fn held_out() -> Vec<CalibrationSample> {
@@ -99,12 +100,7 @@ fn errors_over(
         let whole = s.observation(gamma);
         let observation = Observation { moduli: keep(whole.moduli), ..whole };
         let found = model.infer(&observation, ours()).unwrap();
-        let truth = match quantity {
-            InferredQuantity::K | InferredQuantity::KHat => s.k,
-            InferredQuantity::Z => s.z,
-            InferredQuantity::Eps => s.eps,
-            InferredQuantity::EpsStiffness => s.eps_stiffness,
-        };
+        let truth = truth(s, quantity);
         squares += (found.structure.get(quantity).unwrap() - truth).powi(2);
         let [low, high] = found.interval(quantity).unwrap();
         covered += f64::from(u8::from((low..=high).contains(&truth)));

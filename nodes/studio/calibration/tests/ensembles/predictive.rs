@@ -1,11 +1,12 @@
 //! Posterior predictive probabilities of observed moduli: packings of recipes that taught nothing, and the rows of the paper.
 
-use crate::csv;
-use crate::left_out::Packings;
+use crate::left_out::by_recipe;
+use crate::{csv, ours};
 use grainlab_emt::{
     Calibration, Check, EmtError, ModulusCheck, Observation, Posterior, PosteriorSettings, Prior, Relaxed,
     StrainRatioSource,
 };
+use grainlab_testkit::nightly;
 use std::collections::BTreeSet;
 
 fn check(observation: &Observation, calibration: &Calibration) -> Result<Check, EmtError> {
@@ -21,17 +22,14 @@ fn least(check: &Check) -> f64 {
 
 #[test]
 fn few_packings_of_recipes_that_taught_nothing_are_improbable() {
-    let packings = Packings::read();
-    let recipes: BTreeSet<&str> = packings.others.iter().map(|s| s.preparation.as_str()).collect();
     let (mut all, mut unlikely, mut known) = (Vec::new(), 0, BTreeSet::new());
-    for recipe in recipes {
-        let calibration = packings.calibration(|s| s.preparation != recipe);
-        for s in packings.others.iter().filter(|s| s.preparation == recipe) {
+    for (packings, calibration) in by_recipe() {
+        for s in packings {
             // States of one packing are not independent.
-            if !known.insert(&s.packing) {
+            if !known.insert(&s.packing) || !known.len().is_multiple_of(nightly(3, 1)) {
                 continue;
             }
-            let Ok(found) = check(&s.observation(StrainRatioSource::Zero), &calibration) else { continue };
+            let Ok(found) = check(&s.observation(StrainRatioSource::Zero), calibration) else { continue };
             unlikely += usize::from(found.is_unlikely());
             all.push(found);
         }
@@ -42,16 +40,16 @@ fn few_packings_of_recipes_that_taught_nothing_are_improbable() {
         "{} packings: {unlikely} unlikely; p < .05: chi-square {chi_square:.3}, least modulus {one:.3}",
         all.len()
     );
-    assert!(all.len() >= 160 && unlikely * 50 <= all.len(), "{unlikely}");
+    // Of a third of the packings, two may be.
+    assert!(all.len() >= nightly(50, 160) && unlikely <= nightly(2, all.len() / 50), "{unlikely}");
 }
 
 /// Although the k of the paper is outside the interval of every row. `--nocapture` prints the probabilities.
 #[test]
 fn no_row_of_the_paper_is_unlike_the_packings_of_the_calibration() {
-    let ours = Calibration::builtin("grainlab").unwrap();
     let mut below = 0;
     for (observation, _) in csv::paper_rows() {
-        let found = check(&observation, ours).unwrap();
+        let found = check(&observation, ours()).unwrap();
         let of = |m: &ModulusCheck| format!("{} {:.3} {:.3}", m.modulus, m.predictive, m.left_out.unwrap());
         let moduli: Vec<_> = found.moduli.iter().map(of).collect();
         let kpa = observation.pressure() / 1e3;

@@ -1,15 +1,12 @@
 //! Ranks of the counted structure among draws from the posterior, for packings of recipes that taught nothing.
 
-use crate::left_out::{Packings, truth};
+use crate::left_out::{QUANTITIES, by_recipe, truth};
 use grainlab_calibration::CalibrationSample;
-use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{
     CREDIBLE_LEVEL, Calibration, EmtError, Posterior, PosteriorSettings, Prior, Relaxed, StrainRatioSource,
 };
+use grainlab_testkit::nightly;
 use std::collections::{BTreeMap, BTreeSet};
-
-const QUANTITIES: [InferredQuantity; 4] =
-    [InferredQuantity::Z, InferredQuantity::K, InferredQuantity::Eps, InferredQuantity::EpsStiffness];
 
 /// With the true value, a multiple of the number of bins.
 const DRAWS: usize = 199;
@@ -42,19 +39,21 @@ fn shares(s: &CalibrationSample, calibration: &Calibration, seed: u64) -> Result
 /// states of one packing are not independent: the first state of each packing is ranked. `--nocapture` prints the histograms.
 #[test]
 fn ranks_of_packings_of_recipes_that_taught_nothing_are_not_far_from_uniform() {
-    let packings = Packings::read();
-    let recipes: BTreeSet<&str> = packings.others.iter().map(|s| s.preparation.as_str()).collect();
-    let mut of_states: Vec<(String, [f64; 4])> = Vec::new();
-    let mut unknown = 0;
-    for recipe in recipes {
-        let calibration = packings.calibration(|s| s.preparation != recipe);
-        for s in packings.others.iter().filter(|s| s.preparation == recipe) {
-            match shares(s, &calibration, of_states.len() as u64) {
-                Ok(found) => of_states.push((s.packing.clone(), found)),
+    let mut of_states: Vec<(&str, [f64; 4])> = Vec::new();
+    let (mut unknown, mut seen) = (0, BTreeSet::new());
+    // All states, or the first one of each packing.
+    let (least, [low, high]) = nightly((150, [0.89, 1.0]), (500, [0.92, 0.98]));
+    for (packings, calibration) in by_recipe() {
+        for s in packings {
+            if !seen.insert(&s.packing) && nightly(true, false) {
+                continue;
+            }
+            match shares(s, calibration, of_states.len() as u64) {
+                Ok(found) => of_states.push((&s.packing, found)),
                 Err(
                     EmtError::TooFar { .. } | EmtError::NoCoordination { .. } | EmtError::NotSampled { .. },
                 ) => unknown += 1,
-                Err(e) => panic!("{recipe}: {e}"),
+                Err(e) => panic!("{}: {e}", s.preparation),
             }
         }
     }
@@ -63,18 +62,18 @@ fn ranks_of_packings_of_recipes_that_taught_nothing_are_not_far_from_uniform() {
     for (packing, found) in &of_states {
         first.entry(packing).or_insert(found);
     }
-    assert!(of_states.len() >= 500, "{unknown}");
+    assert!(of_states.len() >= least, "{unknown}");
     for (i, quantity) in QUANTITIES.into_iter().enumerate() {
         let all = histogram(of_states.iter().map(|(_, s)| s[i]));
         let one = histogram(first.values().map(|s| s[i]));
-        let within = |s: &&(String, [f64; 4])| (2.0 * s.1[i] - 1.0).abs() < CREDIBLE_LEVEL;
+        let within = |s: &&(&str, [f64; 4])| (2.0 * s.1[i] - 1.0).abs() < CREDIBLE_LEVEL;
         let covered = of_states.iter().filter(within).count() as f64 / of_states.len() as f64;
         for (name, (counts, chi_square)) in [("all states", &all), ("one state a packing", &one)] {
             eprintln!("{quantity:13} {name:20} {counts:?} chi-square {chi_square:.1}");
         }
         let mean = of_states.iter().map(|(_, s)| s[i]).sum::<f64>() / of_states.len() as f64;
         eprintln!("{quantity:13} within 95 %: {covered:.3}; mean rank {mean:.3}");
-        assert!((0.92..=0.98).contains(&covered), "{quantity}: {covered}");
-        assert!(one.1 < BY_CHANCE && (mean - 0.5).abs() < 0.08, "{quantity}: {one:?} {mean}");
+        assert!((low..=high).contains(&covered), "{quantity}: {covered}");
+        assert!(one.1 < BY_CHANCE && (mean - 0.5).abs() < nightly(0.12, 0.08), "{quantity}: {one:?} {mean}");
     }
 }

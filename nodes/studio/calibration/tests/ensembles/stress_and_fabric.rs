@@ -4,11 +4,11 @@
 //! arXiv:1010.2512: stress and density alone may explain these speeds. Here the contacts are counted. The squares of
 //! speeds along and across e3 have the ratios C33/C11 for P waves and G13/G12 for S waves.
 
-use crate::csv;
 use crate::least_squares::{Fit, Point, within_packings};
+use crate::{csv, ours};
 use grainlab_calibration::CalibrationSample;
 use grainlab_core::results::InferredQuantity;
-use grainlab_emt::{Calibration, Moduli, Modulus, StrainRatioSource};
+use grainlab_emt::{Moduli, Modulus, StrainRatioSource};
 
 /// A number of a packing.
 type Number = fn(&CalibrationSample) -> f64;
@@ -248,7 +248,7 @@ fn speeds_separate_contacts_from_stress_only_if_the_stress_is_known() {
 
     let inside = of(&csv::samples("steps.csv"), |s| (0.02..=0.3).contains(&s.stress_ratio.abs()));
     let relaxed = grainlab_emt::model("relaxed").unwrap();
-    let calibration = Calibration::builtin("grainlab").unwrap();
+    let calibration = ours();
     let rms = |known: bool, quantity: InferredQuantity, truth: Number| {
         let error = |s: &CalibrationSample| {
             let mut o = s.observation(StrainRatioSource::Zero);

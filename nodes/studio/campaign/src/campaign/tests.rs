@@ -59,6 +59,28 @@ fn single_runs_and_tables_add_members() {
 }
 
 #[test]
+fn tables_are_read_with_commas_semicolons_and_tabs_and_with_comments() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = |table: &str| {
+        std::fs::write(folder.path().join("runs.csv"), table).unwrap();
+        Campaign::parse("name = 'x'\ntable = 'runs.csv'", folder.path()).map_err(|e| e.to_string())
+    };
+    let expected = read("scene,seed,friction\ns1,1,0.2\n").unwrap();
+    assert_eq!(names(&expected), ["s1-friction=0.2-1"]);
+    for other in [
+        "scene;seed;friction\ns1;1;0,2\n",
+        "scene\tseed\tfriction\ns1\t1\t0.2\n",
+        "\u{feff}# Sand\nscene, seed, friction\ns1, 1, 0.2\n",
+    ] {
+        assert_eq!(read(other).unwrap().members, expected.members, "{other}");
+    }
+    let error = read("# Sand\nscene,seed\ns1,one\n").unwrap_err();
+    assert!(error.contains("line 3: seed \"one\" is not a number"), "{error}");
+    let error = read("scene|seed\ns1|1\n").unwrap_err();
+    assert!(error.contains("it has no column scene; its columns are: scene|seed"), "{error}");
+}
+
+#[test]
 fn keys_of_one_table_vary_in_step_and_are_combined_with_the_others() {
     let campaign = parse(
         "name = 'x'\nscenes = ['s1']\nseeds = [1]\nvary = { friction = [0.1, 0.2] }\n\

@@ -18,10 +18,8 @@ const POLL_PERIOD: Duration = Duration::from_millis(500);
 /// Number of a task of Slurm, in a shell.
 const SLURM_TASK: &str = "$SLURM_ARRAY_TASK_ID";
 
-/// Advice where the client of Slurm fails.
 const SLURM_ADVICE: &str = "is sbatch on the PATH, and does the controller answer `sinfo`?";
 
-/// Advice where HyperQueue fails.
 const HQ_ADVICE: &str = "is hq on the PATH, with a server and a worker, or is the Python package hyperqueue installed (GRAINLAB_PYTHON names \
                          another Python)?";
 
@@ -75,7 +73,9 @@ pub(super) fn run(
         };
         let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}: {advice}", words[0]));
         let path = folder.logs().join("scheduler.log");
-        let log = File::create(&path).map_err(failed)?;
+        // A link in its place is removed, not followed.
+        let _ = std::fs::remove_file(&path);
+        let log = File::create_new(&path).map_err(failed)?;
         let mut command = Command::new(&words[0]);
         command.args(&words[1..]).stdin(Stdio::null()).stdout(log.try_clone().map_err(failed)?).stderr(log);
         let mut process = command.spawn().map_err(failed)?;
@@ -116,7 +116,6 @@ pub(super) fn run(
     Ok(false)
 }
 
-/// Name of the job.
 fn job_name(campaign: &Campaign) -> String {
     format!("grainlab-{}", campaign.name)
 }

@@ -7,7 +7,6 @@ use std::time::{Duration, Instant};
 /// Time for a member at its time limit to save its state, before it is killed.
 const SAVES_WITHIN: Duration = Duration::from_secs(30);
 
-/// Bytes of a MiB.
 const MIB: u64 = 1 << 20;
 
 /// A limit that a member has reached.

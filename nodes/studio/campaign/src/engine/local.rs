@@ -10,7 +10,6 @@ use crate::progress::Progress;
 use grainlab_console::{Failure, Signals};
 use grainlab_msgs::Exit;
 use std::collections::VecDeque;
-use std::fs::OpenOptions;
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -30,7 +29,6 @@ struct Job {
     task: Task,
     process: Child,
     began: Instant,
-    /// The limit that it reached.
     reached: Option<Reached>,
 }
 
@@ -108,7 +106,7 @@ fn start(campaign: &Campaign, folder: &Folder, member: &Member) -> Result<Child,
     let words = command(campaign, folder, member)?;
     let path = folder.log(member);
     let failed = Failure::at(&path);
-    let log = OpenOptions::new().create(true).append(true).open(&path).map_err(&failed)?;
+    let log = folder.open_log(member).map_err(Failure::failed)?;
     let mut command = Command::new(&words[0]);
     command.args(&words[1..]).stdin(Stdio::null()).stdout(log.try_clone().map_err(&failed)?).stderr(log);
     // Each run finds a free domain.

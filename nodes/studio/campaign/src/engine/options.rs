@@ -12,7 +12,7 @@ pub enum Engine {
     Slurm,
     /// As a task array of HyperQueue, by hq
     Hq,
-    /// Runs nothing and writes no file: print the commands as a shell script, with an option of Slurm as one for sbatch
+    /// Runs nothing: prints the commands as a shell script, with an option of Slurm as one for sbatch. The folder gets the list of members, for status and gather
     Print,
 }
 

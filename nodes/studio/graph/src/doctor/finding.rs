@@ -3,7 +3,6 @@
 use serde::Serialize;
 use std::fmt;
 
-/// Severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Severity {
@@ -23,7 +22,6 @@ pub(super) struct Finding {
     pub(super) kind: &'static str,
     /// Fault and its place.
     pub(super) what: String,
-    /// Remedy of the fault.
     pub(super) advice: String,
 }
 

@@ -15,7 +15,7 @@ use crate::reports::latest_reports;
 use crate::view::Common;
 use finding::{Finding, Severity};
 use grainlab_console::{Failure, count};
-use grainlab_node_kit::{Exit, Network};
+use grainlab_node_kit::{CROWDING_ADVICE, Exit, Network};
 use serde::Serialize;
 use std::time::Duration;
 
@@ -73,8 +73,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 
 /// Findings in the graph of the domain.
 fn of_domain(mut observer: Observer, args: &Args, view: &mut View) -> Result<Vec<Finding>, Failure> {
-    let graph = observer.settled(args.common.patience().max(LEAST));
+    let graph = observer.discovered(args.common.patience().max(LEAST), |_| false);
     let mut findings = endpoints::findings(&graph);
+    findings.extend(observer.crowding().map(|what| Finding::warning("full_domain", what, CROWDING_ADVICE)));
     findings.extend(nodes::findings(&graph));
     findings.extend(nodes::of_reports(&graph, &latest_reports(&mut observer, &graph.reporting())?));
     findings.extend(nodes::of_sim_time(&mut observer, &graph)?);

@@ -19,7 +19,6 @@ const SINGLE: [(&str, &str); 4] = [
     ("rosgraph_msgs/msg/Clock", "clocks"),
 ];
 
-/// Findings about the nodes of the graph.
 pub(super) fn findings(graph: &Graph) -> Vec<Finding> {
     let mut found = Vec::new();
     let mut names: BTreeMap<&str, usize> = BTreeMap::new();
@@ -88,9 +87,10 @@ pub(super) fn of_sim_time(observer: &mut Observer, graph: &Graph) -> Result<Vec<
             continue;
         }
         let request = GetParametersRequest { names: vec!["use_sim_time".into()] };
-        let kind = ("rcl_interfaces", "GetParameters");
         // A node that does not answer was named by its report, or is none of ours.
-        let Ok(answer) = call::<_, GetParametersResponse>(observer, graph, &service, kind, &request) else {
+        let Ok(answer) =
+            call::<_, GetParametersResponse>(observer, graph, &service, "GetParameters", &request)
+        else {
             continue;
         };
         let value = answer.values.into_iter().next().map(ParameterValue::from);

@@ -1,6 +1,7 @@
 //! Processes of a domain that are stopped. Discovery does not show them to a process that starts later.
 
 use super::finding::Finding;
+use grainlab_console::escape_name;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -19,7 +20,8 @@ pub(super) fn stopped(domain: u16) -> Vec<Finding> {
     let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
     let found = processes.filter_map(|entry| {
         let pid: u32 = entry.file_name().to_str()?.parse().ok()?;
-        let (name, state) = name_and_state(&fs::read_to_string(entry.path().join("stat")).ok()?)?;
+        let (name, state) =
+            name_and_state(&String::from_utf8_lossy(&fs::read(entry.path().join("stat")).ok()?))?;
         let stopped = matches!(state, 'T' | 't') && holds_any(&entry.path(), &inodes);
         stopped.then(|| {
             Finding::error(
@@ -56,7 +58,7 @@ fn holds_any(process: &Path, inodes: &BTreeSet<String>) -> bool {
 fn name_and_state(stat: &str) -> Option<(String, char)> {
     let (before, behind) = stat.rsplit_once(')')?;
     let (_, name) = before.split_once('(')?;
-    Some((name.to_owned(), behind.trim_start().chars().next()?))
+    Some((escape_name(name).into_owned(), behind.trim_start().chars().next()?))
 }
 
 #[cfg(test)]
@@ -67,5 +69,10 @@ mod tests {
     fn the_state_is_found_behind_any_name() {
         assert_eq!(name_and_state("12 (a b) c) T 1 1"), Some(("a b) c".into(), 'T')));
         assert_eq!(name_and_state("12"), None);
+    }
+
+    #[test]
+    fn a_name_is_shown_without_what_a_terminal_obeys() {
+        assert_eq!(name_and_state("12 (a\x1b[31m\nb) T 1 1"), Some((r"a\u{1b}[31m\nb".into(), 'T')));
     }
 }

@@ -5,7 +5,8 @@ mod state;
 
 pub(crate) use info::find;
 
-use crate::view::{Common, Listing};
+use crate::names::is_hidden;
+use crate::view::Common;
 use clap::Subcommand;
 use grainlab_console::Failure;
 use grainlab_node_kit::Exit;
@@ -15,7 +16,7 @@ use grainlab_node_kit::Exit;
 pub enum Command {
     /// List the nodes of the domain.
     #[command(after_help = "Example:\n  grainlab node list --format json")]
-    List(Listing),
+    List(Common),
     /// Show the publishers, subscriptions and services of a node.
     #[command(after_help = "Example:\n  grainlab node info /dem_simulator")]
     Info {
@@ -39,10 +40,10 @@ pub enum Command {
 /// With the exit code and the message for the user.
 pub fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
-        Command::List(listing) => {
-            let graph = listing.common.graph()?;
-            let names: Vec<String> = graph.nodes.into_iter().map(|node| node.name).collect();
-            listing.print(names, String::as_str, |names| names.join("\n") + "\n")
+        Command::List(common) => {
+            let nodes = common.graph()?.nodes.into_iter();
+            let names: Vec<String> = nodes.map(|node| node.name).filter(|name| !is_hidden(name)).collect();
+            common.show(&names, || names.iter().map(|name| format!("{name}\n")).collect())
         }
         Command::Info { node, common } => info::run(node, common),
         Command::State(common) => state::run(common),

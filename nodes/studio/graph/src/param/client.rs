@@ -7,10 +7,10 @@ use crate::node::find;
 use crate::observer::Observer;
 use crate::view::Common;
 use grainlab_console::Failure;
-use ros2_client::parameters::raw::{ParameterDescriptor, SetParametersResult};
+use ros2_client::parameters::raw::SetParametersResult;
 use ros2_client::rcl_interfaces::{
-    DescribeParametersRequest, DescribeParametersResponse, GetParametersRequest, GetParametersResponse,
-    ListParametersRequest, ListParametersResponse, SetParametersRequest, SetParametersResponse,
+    GetParametersRequest, GetParametersResponse, ListParametersRequest, ListParametersResponse,
+    SetParametersRequest, SetParametersResponse,
 };
 use ros2_client::{Message, Parameter, ParameterValue};
 
@@ -35,7 +35,6 @@ impl Client {
         Ok((client, name))
     }
 
-    /// True for a node that offers parameters.
     pub(super) fn has_parameters(&self, node: &str) -> bool {
         self.graph.services().contains_key(format!("{node}/list_parameters").as_str())
     }
@@ -46,7 +45,7 @@ impl Client {
         kind: &str,
         request: &Req,
     ) -> Result<Resp, Failure> {
-        call(&mut self.observer, &self.graph, service, ("rcl_interfaces", kind), request)
+        call(&mut self.observer, &self.graph, service, kind, request)
     }
 
     pub(super) fn list(&mut self, node: &str) -> Result<Vec<String>, Failure> {
@@ -60,16 +59,6 @@ impl Client {
         let answer: GetParametersResponse =
             self.ask(&format!("{node}/get_parameters"), "GetParameters", &request)?;
         Ok(answer.values.into_iter().map(Into::into).collect())
-    }
-
-    pub(super) fn describe(
-        &mut self,
-        node: &str,
-        names: &[String],
-    ) -> Result<Vec<ParameterDescriptor>, Failure> {
-        let request = DescribeParametersRequest { names: names.to_vec() };
-        let service = format!("{node}/describe_parameters");
-        self.ask(&service, "DescribeParameters", &request).map(|a: DescribeParametersResponse| a.values)
     }
 
     pub(super) fn set(

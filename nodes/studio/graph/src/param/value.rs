@@ -50,23 +50,6 @@ pub(super) fn to_yaml(value: &ParameterValue) -> String {
     }
 }
 
-/// The name of the type with this number in `rcl_interfaces/msg/ParameterType`.
-pub(super) fn type_name(number: u8) -> &'static str {
-    const NAMES: [&str; 10] = [
-        "not set",
-        "bool",
-        "integer",
-        "double",
-        "string",
-        "byte array",
-        "bool array",
-        "integer array",
-        "double array",
-        "string array",
-    ];
-    NAMES.get(usize::from(number)).copied().unwrap_or("unknown")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -35,7 +35,7 @@ fn view(graph: &Graph, endpoint: &Endpoint) -> EndpointView {
     }
 }
 
-pub(super) fn run(topic: &str, are_types_enough: bool, common: &Common) -> Result<Exit, Failure> {
+pub(super) fn run(topic: &str, common: &Common) -> Result<Exit, Failure> {
     let name = absolute(topic);
     let graph = common.graph_with(|graph| graph.topics().contains_key(name.as_str()))?;
     let topics = graph.topics();
@@ -43,9 +43,6 @@ pub(super) fn run(topic: &str, are_types_enough: bool, common: &Common) -> Resul
         return Err(unknown("topic", &name, topics.keys().copied()));
     };
     let types: Vec<String> = topic.types().into_iter().map(str::to_owned).collect();
-    if are_types_enough {
-        return common.show(&types, || types.iter().map(|name| format!("{name}\n")).collect());
-    }
     let shown = View { name, types, endpoints: topic.endpoints().map(|e| view(&graph, e)).collect() };
     common.show(&shown, || {
         let mut table = Table::new(["node", "kind", "reliability", "durability", "guid"]);

@@ -1,10 +1,22 @@
-//! `grainlab topic list` and `find`.
+//! `grainlab topic list`.
 
 use crate::graph::TopicEntry;
-use crate::view::Listing;
+use crate::names::is_hidden;
+use crate::view::Common;
 use grainlab_console::{Failure, Table};
 use grainlab_node_kit::Exit;
 use serde::Serialize;
+
+/// Arguments of `grainlab topic list`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example:\n  grainlab topic list --types")]
+pub struct Args {
+    /// Print the types, and the numbers of publishers and subscriptions
+    #[arg(short, long)]
+    types: bool,
+    #[command(flatten)]
+    common: Common,
+}
 
 #[derive(Serialize)]
 struct Row {
@@ -15,27 +27,24 @@ struct Row {
     subscriptions: usize,
 }
 
-/// Lists the topics, or those of a type.
-pub(super) fn run(listing: &Listing, type_name: Option<&str>) -> Result<Exit, Failure> {
-    let graph = listing.common.graph()?;
+pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    let graph = args.common.graph()?;
     let row = |(name, topic): (&str, TopicEntry<'_>)| Row {
         name: name.to_owned(),
         types: topic.types().into_iter().map(str::to_owned).collect(),
         publishers: topic.publishers.len(),
         subscriptions: topic.subscriptions.len(),
     };
-    let is_asked = |row: &Row| type_name.is_none_or(|name| row.types.iter().any(|t| t == name));
-    let rows = graph.topics().into_iter().map(row).filter(is_asked).collect();
-    listing.print(
-        rows,
-        |row| &row.name,
-        |rows| {
-            let mut table = Table::new(["topic", "type", "publishers", "subscriptions"]);
-            for row in rows {
-                let counts = [row.publishers.to_string(), row.subscriptions.to_string()];
-                table.row([row.name.clone(), row.types.join(" and ")].into_iter().chain(counts));
-            }
-            table.text()
-        },
-    )
+    let rows: Vec<Row> = graph.topics().into_iter().filter(|(name, _)| !is_hidden(name)).map(row).collect();
+    args.common.show(&rows, || {
+        if !args.types {
+            return rows.iter().map(|row| format!("{}\n", row.name)).collect();
+        }
+        let mut table = Table::new(["topic", "type", "publishers", "subscriptions"]);
+        for row in &rows {
+            let counts = [row.publishers.to_string(), row.subscriptions.to_string()];
+            table.row([row.name.clone(), row.types.join(" and ")].into_iter().chain(counts));
+        }
+        table.text()
+    })
 }

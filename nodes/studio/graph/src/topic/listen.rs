@@ -70,10 +70,10 @@ impl Listener {
             return Err(Failure::failed(format!("{name} has the type {type_name}, which is no ROS message")));
         };
         let mut bus = tool_bus(&format!("_grainlab_topic_{}", std::process::id()))?;
-        let demand = Demand { reliable: qos.reliable, depth: qos.depth };
+        let demand = |depth| Demand { reliable: qos.reliable, ..Demand::best_effort(depth) };
         let source = match (whole, topic.info == topics::PACKING.info) {
-            (true, true) => Source::open(&mut bus, &topic, Demand { depth: PACKINGS, ..demand }),
-            _ => bus.subscribe(&topic, demand).map(Source::Samples),
+            (true, true) => Source::open(&mut bus, &topic, demand(PACKINGS)),
+            _ => bus.subscribe(&topic, demand(qos.depth)).map(Source::Samples),
         };
         Ok(Self { bus, source: source.map_err(Failure::failed)?, topic })
     }

@@ -2,10 +2,10 @@
 
 use super::qos::QosArgs;
 use crate::names::absolute;
-use crate::view::{schema, seconds};
-use grainlab_console::{Failure, print_more};
+use crate::view::schema;
+use grainlab_console::{Failure, count, print_more};
 use grainlab_msgs::Topic;
-use grainlab_node_kit::{Bus, BusError, Exit, Wake, tool_bus};
+use grainlab_node_kit::{Bus, BusError, DdsBus, Delivery, Exit, Wake, tool_bus};
 use grainlab_recordings::MessagePath;
 use std::time::{Duration, Instant};
 
@@ -15,8 +15,14 @@ const POLL: Duration = Duration::from_millis(100);
 /// Time from a match at this end to the first message: a reader that has not yet matched the writer would never get it.
 const SETTLE: Duration = Duration::from_millis(600);
 
-/// Longest wait for the acknowledgement of the last message.
-const ACKNOWLEDGED: Duration = Duration::from_secs(2);
+/// Longest time for which a reader is waited for that does not answer.
+const UNANSWERED: Duration = Duration::from_secs(3);
+
+/// Time for which the publisher stays after the last message: a reader that still discovers it gets a latched one.
+const STAY: Duration = Duration::from_millis(100);
+
+/// Pause between two looks at the acknowledgements.
+const LOOK: Duration = Duration::from_millis(10);
 
 /// Arguments of `grainlab topic pub`.
 #[derive(Debug, clap::Args)]
@@ -45,15 +51,6 @@ pub struct Args {
     /// Wait for this many subscriptions [default: 1 with --once and --times, else 0]
     #[arg(short, long, value_name = "N")]
     wait_matching_subscriptions: Option<usize>,
-    /// Wait at most this time for them, s
-    #[arg(long, value_name = "S", value_parser = seconds)]
-    max_wait_time_secs: Option<f64>,
-    /// Stay this time after the last message, s
-    #[arg(long, value_name = "S", default_value_t = 0.1, value_parser = seconds)]
-    keep_alive: f64,
-    /// Print every Nth message
-    #[arg(short, long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
-    print: u64,
     #[command(flatten)]
     messages: MessagePath,
     #[command(flatten)]
@@ -85,15 +82,9 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let publisher = bus.advertise(&topic).map_err(Failure::failed)?;
     let times = if args.once { Some(1) } else { args.times };
     let needed = args.wait_matching_subscriptions.unwrap_or(usize::from(times.is_some()));
-    let limit = args.max_wait_time_secs.map(Duration::from_secs_f64);
     let start = Instant::now();
     let mut was_said = false;
     while bus.readers(publisher) < needed {
-        if limit.is_some_and(|limit| start.elapsed() >= limit) {
-            return Err(Failure::failed(format!(
-                "{name}: fewer than {needed} subscriptions of {type_name}; see grainlab topic info"
-            )));
-        }
         if !was_said && start.elapsed() > Duration::from_secs(1) {
             was_said = true;
             grainlab_console::say!(
@@ -105,9 +96,13 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         }
     }
     if needed > 0 {
-        let settled = Instant::now() + SETTLE;
-        while let Some(left) = settled.checked_duration_since(Instant::now()).filter(|left| !left.is_zero()) {
-            if bus.wait(left) == Wake::Shutdown {
+        let matched = Instant::now();
+        let is_settled = |bus: &DdsBus| {
+            let limit = if bus.is_known_to_readers(publisher) { SETTLE } else { UNANSWERED };
+            matched.elapsed() >= limit
+        };
+        while !is_settled(&bus) {
+            if bus.wait(POLL) == Wake::Shutdown {
                 return Err(Failure::new(Exit::Interrupted, "interrupted"));
             }
         }
@@ -124,26 +119,36 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
             Err(error) => return Err(Failure::failed(error)),
         }
         sent += 1;
-        let text = format!("publishing #{sent}: {shown}\n");
-        if sent % args.print == 0 && !print_more(&text)? {
+        if !print_more(&format!("publishing #{sent}: {shown}\n"))? {
             return Ok(exit);
         }
         let is_last = times.is_some_and(|times| sent >= times);
         let due = start + Duration::from_secs_f64(sent as f64 / args.rate);
-        let due = if is_last { Instant::now() + Duration::from_secs_f64(args.keep_alive) } else { due };
+        let due = if is_last { Instant::now() + STAY } else { due };
         while let Some(left) = due.checked_duration_since(Instant::now()).filter(|left| !left.is_zero()) {
             if bus.wait(left) == Wake::Shutdown {
                 return Ok(if times.is_some() { Exit::Interrupted } else { exit });
             }
         }
         if is_last {
-            if !bus.flush(ACKNOWLEDGED) {
-                grainlab_console::say!(
-                    "grainlab: a subscription of {name} has not acknowledged the last message"
-                );
-                exit = Exit::DataLoss;
+            let mut delivery = Delivery::begin(u64::MAX, bus.now());
+            loop {
+                let pending = bus.unacknowledged(publisher);
+                if pending == 0 {
+                    return Ok(exit);
+                }
+                if delivery.is_stuck(pending, bus.now()) {
+                    let messages = count(pending, "message");
+                    grainlab_console::say!(
+                        "grainlab: {messages} not acknowledged: a subscription of {name} has acknowledged none of them for {} s",
+                        Delivery::PATIENCE.as_secs()
+                    );
+                    return Ok(Exit::DataLoss);
+                }
+                if bus.wait(LOOK) == Wake::Shutdown {
+                    return Ok(Exit::Interrupted);
+                }
             }
-            return Ok(exit);
         }
     }
 }

@@ -9,37 +9,24 @@ const DEPTH: u32 = 10;
 /// Policies that are set, and not adapted to the other side.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct QosArgs {
-    /// Profile from which the other policies differ
-    #[arg(long, value_parser = ["default", "sensor_data", "services_default", "system_default", "parameters"], value_name = "PROFILE")]
-    qos_profile: Option<String>,
     /// Reliability [default: for a subscription, that of the publishers]
-    #[arg(long, value_parser = ["reliable", "best_effort", "system_default"], value_name = "KIND")]
+    #[arg(long, value_parser = ["reliable", "best_effort"], value_name = "KIND")]
     qos_reliability: Option<String>,
     /// Durability [default: for a subscription, that of the publishers]
-    #[arg(long, value_parser = ["transient_local", "volatile", "system_default"], value_name = "KIND")]
+    #[arg(long, value_parser = ["transient_local", "volatile"], value_name = "KIND")]
     qos_durability: Option<String>,
-    /// History; all is the last 10000
-    #[arg(long, value_parser = ["keep_last", "keep_all", "system_default"], value_name = "KIND")]
-    qos_history: Option<String>,
-    /// Number of messages of the history
+    /// Number of messages kept for a slow or late reader
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     qos_depth: Option<u32>,
 }
 
 impl QosArgs {
     fn with(&self, adapted: Qos) -> Qos {
-        let from = match self.qos_profile.as_deref() {
-            None => adapted,
-            Some("sensor_data") => Qos { reliable: false, depth: 5, transient_local: false },
-            Some("parameters") => Qos { reliable: true, depth: 1000, transient_local: false },
-            Some(_) => Qos { reliable: true, depth: DEPTH, transient_local: false },
-        };
         let is = |policy: &Option<String>, default, word| policy.as_ref().map_or(default, |p| p == word);
-        let all = is(&self.qos_history, false, "keep_all").then_some(10_000);
         Qos {
-            reliable: !is(&self.qos_reliability, !from.reliable, "best_effort"),
-            transient_local: is(&self.qos_durability, from.transient_local, "transient_local"),
-            depth: all.or(self.qos_depth).unwrap_or(from.depth),
+            reliable: is(&self.qos_reliability, adapted.reliable, "reliable"),
+            transient_local: is(&self.qos_durability, adapted.transient_local, "transient_local"),
+            depth: self.qos_depth.unwrap_or(adapted.depth),
         }
     }
 

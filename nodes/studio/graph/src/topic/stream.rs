@@ -5,9 +5,6 @@ use grainlab_node_kit::SampleInfo;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Stamps before 2017, ns since 1970, are simulated times, or not set.
-const WALL_TIME: u64 = 1_500_000_000_000_000_000;
-
 /// Samples of one writer in one window.
 #[derive(Clone, Copy, Debug)]
 struct Span {
@@ -23,8 +20,6 @@ pub(super) struct Stream {
     bytes: u64,
     intervals: Moments,
     transport: Moments,
-    age: Moments,
-    simulated: u64,
 }
 
 /// Mean, spread and range of a quantity.
@@ -55,7 +50,6 @@ impl Moments {
         self.max = self.max.max(value);
     }
 
-    /// Standard deviation of the values.
     pub(super) fn stddev(&self) -> f64 {
         if self.count > 1 { (self.squares / (self.count - 1) as f64).sqrt() } else { 0.0 }
     }
@@ -68,7 +62,6 @@ pub(super) struct Summary {
     pub(super) received: u64,
     /// Samples that were published between the first and the last that arrived, and did not arrive here.
     pub(super) missed: u64,
-    /// Number of publishers.
     pub(super) publishers: usize,
     /// Samples published per second, by sequence numbers and times of the publishers; null with fewer than two.
     pub(super) rate_hz: Option<f64>,
@@ -82,15 +75,11 @@ pub(super) struct Summary {
     pub(super) interval_stddev: Option<f64>,
     /// Time from the publisher to this process, s.
     pub(super) transport: Option<Moments>,
-    /// Age of the header stamps at arrival, s; null for types without header and for simulated stamps.
-    pub(super) age: Option<Moments>,
-    /// Number of stamps that are no wall time.
-    pub(super) simulated: u64,
 }
 
 impl Stream {
-    /// Counts a sample. `stamp` is that of its header, ns since 1970.
-    pub(super) fn add(&mut self, info: &SampleInfo, bytes: usize, stamp: Option<u64>) {
+    /// Counts a sample.
+    pub(super) fn add(&mut self, info: &SampleInfo, bytes: usize) {
         self.bytes += bytes as u64;
         let time = info.source_time.unwrap_or(info.received);
         let now = (info.sequence, time);
@@ -103,21 +92,11 @@ impl Stream {
         if let Some(sent) = info.source_time {
             self.transport.add(seconds_between(sent, info.received));
         }
-        match stamp {
-            Some(stamp) if stamp > WALL_TIME => self.age.add(seconds_between(stamp, info.received)),
-            Some(_) => self.simulated += 1,
-            None => {}
-        }
-    }
-
-    /// Number of samples.
-    pub(super) fn received(&self) -> u64 {
-        self.writers.values().map(|s| s.received).sum()
     }
 
     /// The statistics of a window of `seconds`.
     pub(super) fn summary(&self, seconds: f64) -> Summary {
-        let received = self.received();
+        let received: u64 = self.writers.values().map(|s| s.received).sum();
         let published: u64 = self.writers.values().map(|s| (s.last.0 - s.first.0 + 1).max(0) as u64).sum();
         let rate = |span: &Span| {
             let time = seconds_between(span.first.1, span.last.1);
@@ -135,8 +114,6 @@ impl Stream {
             interval: some(&self.intervals),
             interval_stddev: some(&self.intervals).map(|m| m.stddev()),
             transport: some(&self.transport),
-            age: some(&self.age),
-            simulated: self.simulated,
         }
     }
 }
@@ -164,10 +141,10 @@ mod tests {
         let mut stream = Stream::default();
         // 1 kHz, of which every third arrives, and 500 Hz, of which all arrive.
         for n in (0..1000).step_by(3) {
-            stream.add(&info(1, n + 7, n as u64 * 1_000_000), 100, None);
+            stream.add(&info(1, n + 7, n as u64 * 1_000_000), 100);
         }
         for n in 0..500 {
-            stream.add(&info(2, n, n as u64 * 2_000_000), 100, None);
+            stream.add(&info(2, n, n as u64 * 2_000_000), 100);
         }
         let found = stream.summary(1.0);
         assert!((found.rate_hz.unwrap() - 1500.0).abs() < 1e-6, "{found:?}");

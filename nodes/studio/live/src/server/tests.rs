@@ -36,6 +36,70 @@ fn only_requests_for_this_host_are_answered() {
 }
 
 #[test]
+fn a_request_under_two_names_is_refused() {
+    let server = Server::listen(Some(0)).unwrap();
+    let text = answer(&server, "/", "localhost\r\nHost: evil.example");
+    assert!(text.starts_with("HTTP/1.0 403"), "{text}");
+}
+
+fn connect(server: &Server) -> TcpStream {
+    let stream = TcpStream::connect((Ipv4Addr::LOCALHOST, server.port)).unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+    stream
+}
+
+#[test]
+fn half_requests_and_silent_connections_keep_no_browser_out() {
+    let server = Server::listen(Some(0)).unwrap();
+    server.show(snapshot("1"));
+    let mut follower = BufReader::new(request(&server, "/events", "localhost"));
+    assert_eq!(event(&mut follower).1, r#"{"cards":"1"}"#);
+    // Half of them say nothing.
+    let half = |n| {
+        let mut half = connect(&server);
+        // The server may have closed it already.
+        _ = write!(half, "{}", if n % 2 == 0 { "" } else { "GET / HTTP/1.1\r\nHost: local" });
+        half
+    };
+    let begin = std::time::Instant::now();
+    let mut halves: Vec<TcpStream> = Vec::new();
+    for n in 0..600 {
+        halves.push(half(n));
+        if n % 100 == 99 {
+            let text = answer(&server, "/", "localhost");
+            assert!(text.contains(" 200 OK"), "after {n}: {text}");
+        }
+    }
+    assert!(begin.elapsed() < HEADER_TIMEOUT, "the half requests did not end by themselves");
+    // Who has asked keeps the connection.
+    server.show(snapshot("2"));
+    assert_eq!(event(&mut follower).1, r#"{"cards":"2"}"#);
+}
+
+#[test]
+fn a_browser_beyond_the_maximum_is_told_why() {
+    let server = Server::listen(Some(0)).unwrap();
+    server.show(snapshot("1"));
+    let followers: Vec<_> = (0..Connections::MAX)
+        .map(|_| {
+            let mut follower = BufReader::new(request(&server, "/events", "localhost"));
+            event(&mut follower);
+            follower
+        })
+        .collect();
+    for _ in 0..20 {
+        let text = answer(&server, "/", "localhost");
+        assert!(text.starts_with("HTTP/1.1 503") && text.contains("close some of its windows"), "{text}");
+    }
+    drop(followers);
+    let until = std::time::Instant::now() + Duration::from_secs(20);
+    while !answer(&server, "/", "localhost").contains(" 200 OK") {
+        assert!(std::time::Instant::now() < until, "the places of closed windows are not free");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+#[test]
 fn the_page_loads_nothing_from_elsewhere() {
     let server = Server::listen(Some(0)).unwrap();
     let text = answer(&server, "/", "localhost").to_lowercase();

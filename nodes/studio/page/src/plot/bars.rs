@@ -5,7 +5,6 @@ use super::draw::{Drawing, class};
 use super::figure::Scale;
 use crate::markup::Html;
 
-/// Width of the plot.
 const WIDTH: f64 = 340.0;
 
 /// Right end of the axis.

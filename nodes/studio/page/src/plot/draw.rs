@@ -111,7 +111,6 @@ impl Drawing {
         self.add(format_args!("</g>"));
     }
 
-    /// Adds an element.
     pub(super) fn add(&mut self, element: std::fmt::Arguments<'_>) {
         let _ = writeln!(self.text, "{element}");
     }
@@ -214,7 +213,6 @@ impl Drawing {
         self.text(at, "start", &more, text);
     }
 
-    /// Lines of the legend.
     pub(super) fn legend(&mut self, entries: &[Entry]) {
         let mut y = FRAME[1] + 10.0;
         for entry in entries {
@@ -302,7 +300,6 @@ fn corners(marker: Marker) -> Option<Vec<[f64; 2]>> {
     })
 }
 
-/// The class of a colour.
 pub(super) fn class(colour: Option<usize>) -> String {
     colour.map_or_else(|| "grey".to_owned(), |n| format!("c{}", n % Series::COLOURS))
 }

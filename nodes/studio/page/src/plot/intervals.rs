@@ -5,7 +5,6 @@ use super::draw::{Drawing, HALF_LETTER, Key, class};
 use super::figure::{Marker, Scale};
 use crate::markup::Html;
 
-/// Width of the plot.
 const WIDTH: f64 = 300.0;
 
 /// Ends of the axis.

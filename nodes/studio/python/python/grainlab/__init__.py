@@ -16,7 +16,7 @@ from .measurement import Page, analyze, export, probe, view
 from .plots import plot
 from .program import command
 from .recordings import Packings
-from .runs import Campaign, campaign, launch, report, reproduce, verify
+from .runs import Campaign, campaign, launch, report, reproduce
 from .scenes import Scene, scene_check, scene_keys, scenes
 from .simulation import Simulation, simulate
 
@@ -24,5 +24,11 @@ __all__ = [
     "Campaign", "FileError", "GrainlabError", "Packing", "Packings", "Page", "PhysicsError", "Recording", "Scene", "SceneError",
     "Simulation", "__version__", "analyze", "calibrate", "campaign", "command", "export", "invert", "launch", "load", "models", "open",
     "pick", "plan", "plot", "probe", "quantities", "report", "reproduce", "scene_check", "scene_keys", "scenes", "simulate", "stiffness",
-    "to_arviz", "to_freud", "to_ovito", "verify", "view",
+    "to_arviz", "to_freud", "to_ovito", "view",
 ]
+
+
+def __getattr__(name: str) -> object:
+    if name == "verify":
+        raise AttributeError("grainlab.verify was removed: in a checkout, cargo run --release -p grainlab_verify")
+    raise AttributeError(f"module 'grainlab' has no attribute {name!r}")

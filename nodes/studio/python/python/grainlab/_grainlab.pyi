@@ -149,8 +149,9 @@ class Packing:
         """True for each grain that carries no force, (n,): a copy."""
 
 class PackingIterator(Iterator[Packing]):
-    def skip(self, number: int) -> None:
-        """Passes over this number of packings, which are not decoded."""
+    def after(self, passed: int) -> Packing:
+        """The packing after the next ``passed`` ones, which are not decoded. Raises FileError for damage before it, which would shift its
+        number, and if there is none."""
     def __next__(self) -> Packing: ...
 
 class Recording:
@@ -180,7 +181,7 @@ class Recording:
     def packings(self, topic: str = "packing") -> Packings:
         """Packings: a sequence, read as they are asked for. Raises FileError for a topic that it does not have."""
     def last_packing(self, topic: str = "packing") -> Packing:
-        """Last packing of the topic. Raises IndexError if it has none."""
+        """Last packing of the topic. Raises IndexError if it has none, and FileError for damage."""
     def messages(self, *topics: str) -> Iterator[tuple[str, int, dict[str, Any]]]:
         """(topic, time of arrival in ns since 1970, fields) of the messages of these topics, or of all, of any type. Raises FileError."""
 

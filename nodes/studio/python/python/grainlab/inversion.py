@@ -30,7 +30,7 @@ def invert(
     *,
     table: Any = None,
     speeds: Any = None,
-    error: float | None = 0.01,
+    error: float | None = None,
     model: str = "relaxed",
     calibration: str | PathLike[str] = "default",
     prior: str | None = None,
@@ -41,9 +41,10 @@ def invert(
     """Coordination and anisotropy from moduli or wave speeds of one state or many.
 
     Keywords of a state, each a number or an array (n,): ``pressure``; the moduli ``g12 g13 theta c11 c33 c13``; ``shear_modulus`` of the
-    grains, all in Pa; ``poisson_ratio``, ``phi``, ``stress_ratio`` (q/p), ``size_spread``, ``gamma`` (deviatoric over volumetric strain),
+    grains, all in Pa; ``poisson_ratio``, ``phi``, ``stress_ratio`` (axial minus lateral stress over pressure), ``size_spread``, ``gamma`` (deviatoric over volumetric strain),
     all without unit; ``grains``, their number, 2000 if not known; ``sample``. Only emt and hertz-mindlin use ``phi``, only emt and the ratios ``gamma``. Each may have an error, a standard deviation in its unit: ``g12_sigma``. NaN, None
-    and what a mask hides are not known. ``error`` is the relative error of each modulus without its own; None: unknown.
+    and what a mask hides are not known. ``error`` is the relative error of each modulus without its own, or of each speed; None, as on the command
+    line: unknown, which a warning says, and 0.01 for speeds whose contacts are not known.
 
     Numbers give a dict: ``k``, ``z``, ``eps`` and others with ``_sigma`` and the 95 % ``_interval``, None if undetermined; ``status`` (ok,
     extrapolated or contradictory) and ``warnings``. Raises PhysicsError for moduli without a solution, and ValueError for wrong input.
@@ -94,7 +95,7 @@ def invert(
     drawn_by = None if draws is None else (whole("draws", draws, least=1), whole("seed", seed))
     by = (model, os.fspath(calibration), prior, error)
     answers, drawn = _grainlab.inverted(text, by, drawn_by)
-    failed, warnings = answers.pop("failed"), answers.pop("warnings")
+    failed, warnings, contradictions = (answers.pop(key) for key in ("failed", "warnings", "contradictions"))
     if is_table:
         return tables.like(table, answers)
     if failed[0]:
@@ -105,7 +106,7 @@ def invert(
         found[low.removesuffix("low") + "interval"] = None if None in bounds else bounds
     found["warnings"] = warnings[0]
     if found["status"] == "contradictory":
-        warn(["the estimate is contradictory: " + "; ".join(warnings[0][:1])])
+        warn(["the estimate is contradictory: " + "; ".join(contradictions[0])])
     return found if drawn is None else {**found, "draws": drawn}
 
 

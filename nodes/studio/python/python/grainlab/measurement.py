@@ -77,7 +77,7 @@ def probe(packing: Packings, **parameters: Any) -> dict[str, Any]:
 def export(packings: Packings, out: str | os.PathLike[str], *, format: str = "vtk") -> list[Path]:
     """Writes packings as files of other programs, in SI units, into the folder ``out``; the paths of the new files.
 
-    Formats are csv, lammps, lammps-data, xyz, vtk and vtkhdf; csv and vtkhdf lose nothing but a strain without a reference state. Existing files are not overwritten. Notes on what
+    Formats are csv, lammps, lammps-data, xyz and vtk; csv loses nothing but a strain without a reference state. Existing files are not overwritten. Notes on what
     a format leaves out are warnings. Raises ValueError for another format, and FileError for files that exist.
 
     >>> grainlab.export(recording.packings(), "paraview", format="vtk")

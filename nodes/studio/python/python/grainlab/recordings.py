@@ -11,7 +11,8 @@ from ._grainlab import Packing, Recording
 class Packings(Sequence[Packing]):
     """The packings of a recording, in SI units: a sequence, of which each is read as it is asked for.
 
-    Going through it reads once; an index reads what is before it. Raises FileError for damage, and IndexError.
+    Going through it reads once; an index reads what is before it. Raises IndexError, and FileError for damage: after the packings that can
+    be read if you go through them, and at once for an index behind the damage.
 
     >>> recording.packings()[-1], len(recording.packings())
     """
@@ -33,6 +34,5 @@ class Packings(Sequence[Packing]):
         places = list(range(size)[at]) if isinstance(at, slice) else [range(size)[at]]
         reader, passed, found = self._recording._packings(self._topic), 0, {}
         for place in sorted(places):
-            reader.skip(place - passed)
-            found[place], passed = next(reader), place + 1
+            found[place], passed = reader.after(place - passed), place + 1
         return [found[place] for place in places] if isinstance(at, slice) else found[places[0]]

@@ -62,8 +62,8 @@ class Campaign:
         return json.loads(call("campaign", "status", self.path, "--format=json"))
 
     def gather(self) -> dict[str, Any]:
-        """Columns of the states of all finished members, in SI units: arrays, of texts where one is no number. It also writes states.csv,
-        groups.csv and both as Parquet. Missing members are a warning. Raises GrainlabError."""
+        """Columns of the states of all finished members, in SI units: arrays, of texts where one is no number. It also writes states.csv
+        and groups.csv. Missing members are a warning. Raises GrainlabError."""
         call("campaign", "gather", self.path)
         return tables.parsed((self.path / "states.csv").read_text())
 
@@ -119,14 +119,3 @@ def reproduce(out: PathOrText | None = None, **options: Any) -> dict[str, Any]:
     >>> grainlab.reproduce("paper", quick=True)
     """
     return json.loads(call("reproduce", "--format=json", *flags({"out": out, **options})))
-
-
-def verify(*only: str, slow: bool = False) -> list[dict[str, Any]]:
-    """Compares this package with other codes and the literature: a row for each comparison, with its ``unit``, ``tolerance``, ``verdict``.
-
-    ``only`` are names of suites. A failed comparison is a warning and a row. Raises ValueError for another suite.
-
-    >>> [row["verdict"] for row in grainlab.verify("chung-ooi")]
-    """
-    words = [f"--only={suite}" for suite in only]
-    return json.loads(call("verify", "--format=json", *words, *flags({"slow": slow}), answers=(0, 1)))

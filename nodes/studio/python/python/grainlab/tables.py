@@ -73,17 +73,24 @@ def csv_text(given: dict[str, list[str] | str], numbered: bool = False) -> str:
 
 
 def parsed(text: str) -> dict[str, Any]:
-    """Columns of CSV as arrays: of numbers, with NaN for what is unknown, of flags, or of texts."""
+    """Columns of CSV as arrays, typed as pandas types them: of integers, of numbers with NaN for what is unknown, of flags, or of texts."""
+    header, *rows = csv.reader(io.StringIO(text))
+    return {name: typed(cells) for name, cells in zip(header, zip(*rows) if rows else [()] * len(header))}
+
+
+def typed(cells: tuple[str, ...]) -> Any:
+    """The cells of a column as an array."""
     import numpy as np
 
-    header, *rows = csv.reader(io.StringIO(text))
-    found = {}
-    for name, cells in zip(header, zip(*rows) if rows else [()] * len(header)):
-        try:
-            found[name] = np.array([float(cell or "nan") for cell in cells])
-        except ValueError:
-            found[name] = np.array(cells) == "true" if set(cells) <= {"true", "false"} else np.array(cells)
-    return found
+    if cells and all(cell.lstrip("-").isdecimal() for cell in cells):
+        # A float has 53 bits: it would change a large seed.
+        whole = np.array([int(cell) for cell in cells])
+        if whole.dtype.kind in "iu":
+            return whole
+    try:
+        return np.array([float(cell or "nan") for cell in cells])
+    except ValueError:
+        return np.array(cells) == "true" if set(cells) <= {"true", "false"} else np.array(cells)
 
 
 def like(table: Any, answers: dict[str, Any]) -> Any:

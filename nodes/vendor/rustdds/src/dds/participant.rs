@@ -23,7 +23,7 @@ use log::{debug, error, info, trace, warn};
 use crate::{
   create_error_out_of_resources, create_error_poisoned,
   dds::{
-    peer_hooks::PeerHooks,
+    peer_hooks::{PeerHooks, ReceptionEvent},
     pubsub::*,
     qos::*,
     result::*,
@@ -187,19 +187,39 @@ impl DomainParticipantBuilder {
     self
   }
 
+  /// Be told what the local readers of the application learn of matched writers
+  /// besides samples: what a writer announces to hold, so that samples that never
+  /// arrive are known, and which samples are too large to be received.
+  ///
+  /// Called with the GUIDs of the writer and of the local reader, in the event
+  /// loop's thread: it must be quick and must not call into this participant.
+  pub fn reception_listener(
+    mut self,
+    listener: impl Fn(GUID, GUID, ReceptionEvent) + Send + Sync + 'static,
+  ) -> Self {
+    self.peer_hooks.reception_listener = Some(std::sync::Arc::new(listener));
+    self
+  }
+
   /// Be told of each newly discovered participant before any endpoint of it is
-  /// matched. Called in the discovery thread: it must be quick and must not call
-  /// into this participant.
+  /// matched, and tell whether it is one that the application counts on. The
+  /// tables of participants and endpoints have room that is kept for those:
+  /// others cannot take it, however many they are.
+  ///
+  /// Called in the discovery thread: it must be quick and must not call into this
+  /// participant. It is also called of participants that are then refused.
   pub fn participant_listener(
     mut self,
-    listener: impl Fn(&ParticipantDescription) + Send + Sync + 'static,
+    listener: impl Fn(&ParticipantDescription) -> bool + Send + Sync + 'static,
   ) -> Self {
     self.peer_hooks.participant_listener = Some(std::sync::Arc::new(listener));
     self
   }
 
   /// Largest sample, in bytes, that is assembled from fragments (default: 16
-  /// MiB). Larger ones are discarded.
+  /// MiB). Larger ones are skipped: a reliable Writer is told that they arrived,
+  /// so that it goes on with the next one, and
+  /// [`Self::reception_listener`] is told that they did not.
   ///
   /// It also bounds the memory of incomplete samples: two of this size from one
   /// remote Writer, four in the participant.
@@ -685,6 +705,12 @@ impl DomainParticipant {
   /// ```
   pub fn discovered_readers(&self) -> Vec<DiscoveredReaderData> {
     self.dpi.lock().unwrap().discovered_readers()
+  }
+
+  /// Number of participants that were refused, because as many as there is room
+  /// for are known, and were not admitted since. At most 4096 are counted.
+  pub fn refused_participants(&self) -> usize {
+    self.dpi.lock().unwrap().refused_participants()
   }
 
   /// Gets a snapshot of all Writers discovered over the DDS network.
@@ -1178,6 +1204,10 @@ impl DomainParticipantDisc {
 
   pub fn discovered_topics(&self) -> Vec<DiscoveredTopicData> {
     self.dpi.discovered_topics()
+  }
+
+  pub fn refused_participants(&self) -> usize {
+    self.dpi.refused_participants()
   }
 
   pub fn discovered_readers(&self) -> Vec<DiscoveredReaderData> {
@@ -1811,6 +1841,14 @@ impl DomainParticipantInner {
     });
 
     db.all_user_topics().cloned().collect()
+  }
+
+  pub fn refused_participants(&self) -> usize {
+    let db = self.discovery_db.read().unwrap_or_else(|e| {
+      panic!("RustDDS internal bug: DiscoveryDB is poisoned after a prior panic: {e:?}")
+    });
+
+    db.refused_participants()
   }
 
   pub fn discovered_readers(&self) -> Vec<DiscoveredReaderData> {

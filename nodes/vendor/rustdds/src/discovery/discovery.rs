@@ -121,7 +121,7 @@ pub struct LivelinessState {
 impl LivelinessState {
   pub fn new() -> Self {
     Self {
-      last_auto_update: Timestamp::now(),
+      last_auto_update: Timestamp::monotonic(),
       manual_participant_liveness_refresh_requested: false,
     }
   }
@@ -1072,20 +1072,20 @@ impl Discovery {
       debug!("Not a participant: {:?}", participant_data.participant_guid);
       return;
     }
+    // The listener is called without the lock of the database.
+    let is_to_be_judged = discovery_db_read(&self.discovery_db).is_to_be_judged(guid_prefix);
+    let is_counted_on = match &self.peer_hooks.participant_listener {
+      Some(listener) if is_to_be_judged => listener(&participant_data.into()),
+      _ => false,
+    };
     let was_new = {
       let mut db = discovery_db_write(&self.discovery_db);
-      if !db.has_room_for_participant(guid_prefix) {
+      if !db.admit_participant(guid_prefix, is_counted_on) {
         warn_sparsely!("Too many participants in the domain: {guid_prefix:?} refused");
         return;
       }
       db.update_participant(participant_data)
     };
-
-    if was_new {
-      if let Some(listener) = &self.peer_hooks.participant_listener {
-        listener(&participant_data.into());
-      }
-    }
 
     // Send notification to dp_event_loop. It will update local reader/writer
     // proxies as the SpdpDiscoveredParticipantData contains a bitmap of the
@@ -1547,7 +1547,7 @@ impl Discovery {
       })
       .min();
 
-    let timenow = Timestamp::now();
+    let timenow = Timestamp::monotonic();
 
     let mut messages_to_be_sent: Vec<ParticipantMessageData> = vec![];
 

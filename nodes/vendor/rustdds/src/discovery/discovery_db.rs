@@ -1,11 +1,10 @@
 use std::{
   cmp::min,
-  collections::BTreeMap,
+  collections::{BTreeMap, BTreeSet},
   sync::{Arc, RwLock, RwLockReadGuard, RwLockWriteGuard},
   time::Instant,
 };
 
-use chrono::Utc;
 #[allow(unused_imports)]
 use log::{debug, error, info, trace, warn};
 
@@ -24,6 +23,7 @@ use crate::{
     duration::Duration,
     entity::RTPSEntity,
     guid::{EntityId, GuidPrefix, GUID},
+    time::utc_now,
   },
 };
 use super::{
@@ -47,7 +47,11 @@ const DEFAULT_PARTICIPANT_LEASE_DURATION: Duration = Duration::from_secs(60);
 const PARTICIPANT_LEASE_DURATION_TOLERANCE: Duration = Duration::from_secs(0);
 
 // What anyone on the network can fill is bounded. What does not fit is refused.
+// As much again is kept for participants that the application counts on, which
+// therefore come in however many others there are.
 const MAX_PARTICIPANTS: usize = 512;
+// Participants that are known to have been refused.
+const MAX_REFUSED: usize = 4096;
 // Readers; as many Writers.
 const MAX_REMOTE_ENDPOINTS: usize = 4096;
 // Of them, while their participant is not known.
@@ -67,6 +71,10 @@ pub(crate) struct DiscoveryDB {
   my_guid: GUID,
   participant_proxies: BTreeMap<GuidPrefix, SpdpDiscoveredParticipantData>,
   participant_last_life_signs: BTreeMap<GuidPrefix, Instant>,
+  // Participants that the application counts on, also while they are lost.
+  counted_on: BTreeSet<GuidPrefix>,
+  // Participants for which there was no room.
+  refused: BTreeSet<GuidPrefix>,
 
   // Authentication statuses of participants
   #[cfg(feature = "security")]
@@ -117,6 +125,16 @@ fn move_by_guid_prefix<D>(
   }
 }
 
+// Makes room by what is of others first.
+fn shrink<D>(attic: &mut BTreeMap<GUID, D>, counted_on: &BTreeSet<GuidPrefix>) {
+  if attic.len() > MAX_REMOTE_ENDPOINTS {
+    attic.retain(|guid, _| counted_on.contains(&guid.prefix));
+  }
+  if attic.len() > MAX_REMOTE_ENDPOINTS {
+    attic.clear();
+  }
+}
+
 pub(crate) fn discovery_db_read(
   discovery_db: &Arc<RwLock<DiscoveryDB>>,
 ) -> RwLockReadGuard<'_, DiscoveryDB> {
@@ -145,6 +163,8 @@ impl DiscoveryDB {
       my_guid,
       participant_proxies: BTreeMap::new(),
       participant_last_life_signs: BTreeMap::new(),
+      counted_on: BTreeSet::new(),
+      refused: BTreeSet::new(),
       #[cfg(feature = "security")]
       authentication_statuses: BTreeMap::new(),
       local_topic_writers: BTreeMap::new(),
@@ -166,17 +186,70 @@ impl DiscoveryDB {
       .unwrap_or_else(|e| warn_sparsely!("Cannot report participant status: {e:?}"));
   }
 
-  /// Is there room for this participant, or is it known already?
-  pub fn has_room_for_participant(&self, guid_prefix: GuidPrefix) -> bool {
-    self.participant_proxies.len() < MAX_PARTICIPANTS
-      || self.participant_proxies.contains_key(&guid_prefix)
+  /// Does it matter whether the application counts on this newcomer? Not if
+  /// there is no room for anyone. One that was refused is not looked at again
+  /// until there is room for everyone.
+  pub fn is_to_be_judged(&self, guid_prefix: GuidPrefix) -> bool {
+    let count = self.participant_proxies.len();
+    let is_known = self.participant_proxies.contains_key(&guid_prefix);
+    let was_refused = self.refused.contains(&guid_prefix);
+    let room = if was_refused {
+      MAX_PARTICIPANTS
+    } else {
+      2 * MAX_PARTICIPANTS
+    };
+    !is_known && count < room
+  }
+
+  /// Is there room for this participant, which the application counts on or not?
+  pub fn admit_participant(&mut self, guid_prefix: GuidPrefix, is_counted_on: bool) -> bool {
+    if self.participant_proxies.contains_key(&guid_prefix) {
+      return true;
+    }
+    let room = if is_counted_on {
+      2 * MAX_PARTICIPANTS
+    } else {
+      MAX_PARTICIPANTS
+    };
+    if self.participant_proxies.len() >= room {
+      // It is asked for again whether we count on one, once there is room.
+      if self.participant_proxies.len() < 2 * MAX_PARTICIPANTS {
+        if self.refused.len() >= MAX_REFUSED {
+          self.refused.pop_first();
+        }
+        self.refused.insert(guid_prefix);
+      }
+      return false;
+    }
+    self.refused.remove(&guid_prefix);
+    if is_counted_on {
+      let known = &self.participant_proxies;
+      if self.counted_on.len() >= 4 * MAX_PARTICIPANTS {
+        self.counted_on.retain(|prefix| known.contains_key(prefix));
+      }
+      self.counted_on.insert(guid_prefix);
+    }
+    true
+  }
+
+  pub fn refused_participants(&self) -> usize {
+    self.refused.len()
+  }
+
+  // Twice as much for participants that the application counts on.
+  fn limit_for(&self, guid_prefix: GuidPrefix, limit: usize) -> usize {
+    if self.counted_on.contains(&guid_prefix) {
+      2 * limit
+    } else {
+      limit
+    }
   }
 
   fn may_add_endpoint(&self, guid: GUID, strings: usize, is_known: bool, count: usize) -> bool {
     // Endpoints are removed with their participant. One that is not known (yet)
     // may never be removed.
     let limit = if self.participant_proxies.contains_key(&guid.prefix) {
-      MAX_REMOTE_ENDPOINTS
+      self.limit_for(guid.prefix, MAX_REMOTE_ENDPOINTS)
     } else {
       MAX_ENDPOINTS_OF_STRANGERS
     };
@@ -303,6 +376,7 @@ impl DiscoveryDB {
     self.authentication_statuses.remove(&guid_prefix);
 
     if active_disposal {
+      self.counted_on.remove(&guid_prefix);
       self.remove_topic_reader_with_prefix(guid_prefix);
       self.remove_topic_writer_with_prefix(guid_prefix);
     } else {
@@ -318,12 +392,9 @@ impl DiscoveryDB {
         &mut self.external_topic_writers_attic,
       );
       // It is only a convenience for those who come back.
-      if self.external_topic_readers_attic.len() > MAX_REMOTE_ENDPOINTS {
-        self.external_topic_readers_attic.clear();
-      }
-      if self.external_topic_writers_attic.len() > MAX_REMOTE_ENDPOINTS {
-        self.external_topic_writers_attic.clear();
-      }
+      let counted_on = &self.counted_on;
+      shrink(&mut self.external_topic_readers_attic, counted_on);
+      shrink(&mut self.external_topic_writers_attic, counted_on);
     }
   }
 
@@ -587,7 +658,7 @@ impl DiscoveryDB {
     // Now the topic update:
     let dtd = data.subscription_topic_data.to_topic_data();
     self.update_topic_data(
-      &DiscoveredTopicData::new(Utc::now(), dtd),
+      &DiscoveredTopicData::new(utc_now(), dtd),
       guid,
       DiscoveredVia::Subscription,
     );
@@ -652,7 +723,7 @@ impl DiscoveryDB {
     // Now the topic update:
     let dtd = data.publication_topic_data.to_topic_data();
     self.update_topic_data(
-      &DiscoveredTopicData::new(Utc::now(), dtd),
+      &DiscoveredTopicData::new(utc_now(), dtd),
       guid,
       DiscoveredVia::Publication,
     );
@@ -663,7 +734,7 @@ impl DiscoveryDB {
   // This is for local participant updating the topic table
   pub fn update_topic_data_p(&mut self, topic: &Topic) {
     let topic_data = DiscoveredTopicData::new(
-      Utc::now(),
+      utc_now(),
       TopicBuiltinTopicData::new(
         None,
         topic.name(),
@@ -691,7 +762,8 @@ impl DiscoveryDB {
     if !is_known
       && updater.prefix != self.my_guid.prefix
       && (dtd.topic_data.name.len() + dtd.topic_data.type_name.len() > MAX_ENDPOINT_STRINGS
-        || self.topics.values().map(BTreeMap::len).sum::<usize>() >= MAX_TOPIC_RECORDS)
+        || self.topics.values().map(BTreeMap::len).sum::<usize>()
+          >= self.limit_for(updater.prefix, MAX_TOPIC_RECORDS))
     {
       warn_sparsely!("Too many topics, or too long names: topic data of {updater:?} refused");
       return;
@@ -1038,13 +1110,13 @@ mod tests {
     let mut last_known = data.participant_guid;
     for _ in 0..2 * MAX_PARTICIPANTS {
       data.participant_guid = GUID::new_participant_guid();
-      if db.has_room_for_participant(data.participant_guid.prefix) {
+      if db.admit_participant(data.participant_guid.prefix, false) {
         db.update_participant(&data);
         last_known = data.participant_guid;
       }
     }
     assert_eq!(db.participant_proxies.len(), MAX_PARTICIPANTS);
-    assert!(db.has_room_for_participant(last_known.prefix));
+    assert!(db.admit_participant(last_known.prefix, false));
     let known = db.find_participant_proxy(last_known.prefix).unwrap();
     assert_eq!(known.default_unicast_locators.len(), MAX_LOCATORS_PER_LIST);
 
@@ -1066,6 +1138,71 @@ mod tests {
     reader.user_data = vec![0; MAX_ENDPOINT_STRINGS];
     db.external_topic_readers.clear();
     assert!(!db.may_add_reader(&reader));
+  }
+
+  #[test]
+  fn what_the_application_counts_on_comes_in_however_many_others_there_are() {
+    let (event_sender, _event_receiver) = std::sync::mpsc::sync_channel::<()>(4);
+    let (status_sender, _status_receiver) = sync_status_channel(16).unwrap();
+    let mut db = DiscoveryDB::new(GUID::new_participant_guid(), event_sender, status_sender);
+
+    let mut data = spdp_participant_data().unwrap();
+    let mut arrives = |db: &mut DiscoveryDB, guid: GUID, is_counted_on| {
+      data.participant_guid = guid;
+      let is_counted_on = db.is_to_be_judged(guid.prefix) && is_counted_on;
+      let is_admitted = db.admit_participant(guid.prefix, is_counted_on);
+      if is_admitted {
+        db.update_participant(&data);
+      }
+      is_admitted
+    };
+    let mut reader = DiscoveredReaderData::default("topic".into(), "type".into());
+    let mut announces = |db: &mut DiscoveryDB, prefix, number: u32| {
+      let key = [(number >> 16) as u8, (number >> 8) as u8, number as u8];
+      let id = EntityId::new(key, EntityKind::READER_NO_KEY_USER_DEFINED);
+      reader.reader_proxy.remote_reader_guid = GUID::new(prefix, id);
+      let may = db.may_add_reader(&reader);
+      if may {
+        db.update_subscription(&reader);
+      }
+      may
+    };
+
+    let others: Vec<_> = (0..2 * MAX_PARTICIPANTS)
+      .map(|_| GUID::new_participant_guid())
+      .filter(|guid| arrives(&mut db, *guid, false))
+      .collect();
+    assert_eq!(others.len(), MAX_PARTICIPANTS);
+    assert_eq!(db.refused_participants(), MAX_PARTICIPANTS);
+    for (number, guid) in (0..).zip(others.iter().cycle().take(MAX_REMOTE_ENDPOINTS)) {
+      assert!(announces(&mut db, guid.prefix, number));
+    }
+    assert!(!announces(&mut db, others[0].prefix, u32::MAX));
+
+    // Our own come in, with their endpoints, and only as many as are kept room for.
+    let own: Vec<_> = (0..2 * MAX_PARTICIPANTS)
+      .map(|_| GUID::new_participant_guid())
+      .filter(|guid| arrives(&mut db, *guid, true))
+      .collect();
+    assert_eq!(own.len(), MAX_PARTICIPANTS);
+    for number in 0..100 {
+      assert!(announces(&mut db, own[0].prefix, number));
+    }
+
+    // Who was refused is judged once, until there is room for everyone.
+    let late = GUID::new_participant_guid();
+    assert!(!db.is_to_be_judged(late.prefix));
+    own.iter().for_each(|guid| db.remove_participant(guid.prefix, false));
+    assert!(db.is_to_be_judged(late.prefix) && !arrives(&mut db, late, false));
+    assert!(!db.is_to_be_judged(late.prefix));
+    db.remove_participant(others[0].prefix, true);
+    assert!(db.is_to_be_judged(late.prefix) && arrives(&mut db, late, false));
+
+    // Endpoints of our own that were lost for a while outlast those of others.
+    others[1..].iter().for_each(|guid| db.remove_participant(guid.prefix, false));
+    assert!(arrives(&mut db, own[0], true));
+    let (readers, _) = db.endpoints_of(own[0].prefix);
+    assert_eq!(readers.len(), 100);
   }
 
   #[test]

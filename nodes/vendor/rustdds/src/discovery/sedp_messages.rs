@@ -43,6 +43,7 @@ use crate::{
     locator,
     locator::Locator,
     parameter_id::ParameterId,
+    time::utc_now,
   },
   Key, Keyed,
 };
@@ -1201,7 +1202,7 @@ impl PlCdrDeserialize for DiscoveredTopicData {
     let topic_data = TopicBuiltinTopicData::new(key, name, type_name, &qos);
 
     Ok(DiscoveredTopicData {
-      updated_time: Utc::now(),
+      updated_time: utc_now(),
       topic_data,
     })
   }
@@ -1493,7 +1494,7 @@ mod tests {
   fn td_discovered_topic_data_ser_deser() {
     let topic_data = topic_data().unwrap();
 
-    let dtd = DiscoveredTopicData::new(Utc::now(), topic_data);
+    let dtd = DiscoveredTopicData::new(utc_now(), topic_data);
 
     let sdata = dtd
       .to_pl_cdr_bytes(RepresentationIdentifier::PL_CDR_LE)

@@ -25,6 +25,7 @@ use crate::{
     locator,
     locator::Locator,
     parameter_id::ParameterId,
+    time::utc_now,
   },
   Key, Keyed, RepresentationIdentifier,
 };
@@ -207,7 +208,7 @@ impl SpdpDiscoveredParticipantData {
     }
 
     Self {
-      updated_time: Utc::now(),
+      updated_time: utc_now(),
       protocol_version: ProtocolVersion::PROTOCOLVERSION_2_3,
       vendor_id: VendorId::THIS_IMPLEMENTATION,
       expects_inline_qos: false,
@@ -344,7 +345,7 @@ impl PlCdrDeserialize for SpdpDiscoveredParticipantData {
     )?;
 
     Ok(Self {
-      updated_time: Utc::now(),
+      updated_time: utc_now(),
       protocol_version,
       vendor_id,
       expects_inline_qos,

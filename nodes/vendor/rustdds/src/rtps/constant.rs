@@ -92,6 +92,10 @@ pub const MAX_LOCATORS_PER_LIST: usize = 16;
 // are handed over.
 pub const MAX_WITHHELD_BYTES_PER_TOPIC: usize = 16 * 1024 * 1024;
 
+// Most payload bytes a TopicCache retains in samples beyond the History depth,
+// where ResourceLimits allow more of them.
+pub const MAX_BYTES_BEYOND_DEPTH_PER_TOPIC: usize = 16 * 1024 * 1024;
+
 // Default / fallback UDP-payload budget (RTPS header + submessages) used to
 // size datagrams built by the writer's DATA-coalescing and DATAFRAG packing
 // paths when the per-peer path MTU is unknown (peer behind a router, IPv6, or

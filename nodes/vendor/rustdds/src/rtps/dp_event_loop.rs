@@ -7,7 +7,6 @@ use std::{
   time::{Duration, Instant},
 };
 
-use chrono::Utc;
 use log::{debug, error, info, trace, warn};
 use mio1::{Events, Interest, Poll, Token};
 
@@ -56,6 +55,7 @@ use crate::{
     dds_cache::DDSCache,
     entity::RTPSEntity,
     guid::{EntityId, GuidPrefix, TokenDecode, GUID},
+    time::utc_now,
   },
   //QosPolicyBuilder,
   //QosPolicies,
@@ -968,7 +968,7 @@ impl DPEventLoop {
       .participant_status_sender
       .try_send(DomainParticipantStatusEvent::ReaderDetected {
         reader: EndpointDescription {
-          updated_time: Utc::now(),
+          updated_time: utc_now(),
           guid: remote_reader.reader_proxy.remote_reader_guid,
           topic_name: remote_reader.subscription_topic_data.topic_name.clone(),
           type_name: remote_reader.subscription_topic_data.type_name().clone(),
@@ -1057,7 +1057,7 @@ impl DPEventLoop {
       .participant_status_sender
       .try_send(DomainParticipantStatusEvent::WriterDetected {
         writer: EndpointDescription {
-          updated_time: Utc::now(),
+          updated_time: utc_now(),
           guid: remote_writer.writer_proxy.remote_writer_guid,
           topic_name: remote_writer.publication_topic_data.topic_name.clone(),
           type_name: remote_writer.publication_topic_data.type_name.clone(),
@@ -1152,6 +1152,7 @@ impl DPEventLoop {
     );
 
     new_reader.set_data_filter(self.peer_hooks.data_filter.clone());
+    new_reader.set_reception_listener(self.peer_hooks.reception_listener.clone());
 
     // Reader commands share the poll waker. The ready queue records the entity
     // id, so there is nothing to register under the reader token.

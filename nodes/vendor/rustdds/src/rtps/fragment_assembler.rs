@@ -50,6 +50,10 @@ impl FragmentBudget {
     }
   }
 
+  pub fn max_sample_size(&self) -> usize {
+    self.max_sample_size
+  }
+
   fn writer_limit(&self) -> usize {
     self.max_sample_size.saturating_mul(WRITER_BUDGET_SAMPLES)
   }
@@ -71,7 +75,7 @@ struct AssemblyBuffer {
   budget: Rc<FragmentBudget>,
   budgeted: usize,
 
-  modified_time: Timestamp,
+  modified_time: Timestamp, // monotonic
 }
 
 impl Drop for AssemblyBuffer {
@@ -123,7 +127,7 @@ impl AssemblyBuffer {
       received_bitmap: BitVec::from_elem(fragment_count, false),
       budget: Rc::clone(budget),
       budgeted: data_size,
-      modified_time: Timestamp::now(),
+      modified_time: Timestamp::monotonic(),
     })
   }
 
@@ -233,7 +237,7 @@ impl AssemblyBuffer {
     for f in 0..frags_in_submessage {
       self.received_bitmap.set(start_frag_from_0 + f, true);
     }
-    self.modified_time = Timestamp::now();
+    self.modified_time = Timestamp::monotonic();
     true
   }
 
@@ -474,7 +478,7 @@ mod tests {
     }
     assert_eq!(budget.used.get(), 4 << 20);
     writers.truncate(1);
-    writers[0].garbage_collect_before(super::Timestamp::now());
+    writers[0].garbage_collect_before(super::Timestamp::monotonic());
     assert_eq!(budget.used.get(), 0, "what is dropped is given back");
   }
 

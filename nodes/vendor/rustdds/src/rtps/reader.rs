@@ -17,7 +17,7 @@ use speedy::Writable;
 use crate::{
   dds::{
     ddsdata::DDSData,
-    peer_hooks::DataFilter,
+    peer_hooks::{DataFilter, ReceptionEvent, ReceptionListener},
     qos::{policy, HasQoSPolicy, QosPolicies},
     statusevents::{
       CountWithChange, DataReaderStatus, DomainParticipantStatusEvent, StatusChannelSender,
@@ -139,7 +139,7 @@ pub(crate) struct Reader {
 
   fragment_assemblers: BTreeMap<GUID, FragmentAssembler>,
   fragment_budget: Rc<FragmentBudget>, // shared by the readers of the participant
-  last_fragment_garbage_collect: Timestamp,
+  last_fragment_garbage_collect: Timestamp, // monotonic
   matched_writers: BTreeMap<GUID, RtpsWriterProxy>,
   writer_match_count_total: i32, // total count, never decreases
 
@@ -156,6 +156,7 @@ pub(crate) struct Reader {
 
   // Which samples the application takes; all of them if None.
   data_filter: Option<DataFilter>,
+  reception_listener: Option<ReceptionListener>,
 
   #[allow(dead_code)] // to avoid warning if no security feature
   security_plugins: Option<SecurityPluginsHandle>,
@@ -219,7 +220,7 @@ impl Reader {
       received_heartbeat_count: 0,
       fragment_assemblers: BTreeMap::new(),
       fragment_budget,
-      last_fragment_garbage_collect: Timestamp::now(),
+      last_fragment_garbage_collect: Timestamp::monotonic(),
       matched_writers: BTreeMap::new(),
       writer_match_count_total: 0,
       requested_deadline_missed_count: 0,
@@ -231,6 +232,7 @@ impl Reader {
       discovery_notify: i.discovery_notify,
       participant_status_sender,
       data_filter: None,
+      reception_listener: None,
 
       security_plugins: i.security_plugins,
     }
@@ -247,6 +249,18 @@ impl Reader {
 
   pub fn set_data_filter(&mut self, filter: Option<DataFilter>) {
     self.data_filter = filter;
+  }
+
+  pub fn set_reception_listener(&mut self, listener: Option<ReceptionListener>) {
+    self.reception_listener = listener;
+  }
+
+  fn tell_listener(&self, writer_guid: GUID, event: ReceptionEvent) {
+    if let Some(listener) = &self.reception_listener {
+      if writer_guid.entity_id.entity_kind.is_user_defined() {
+        listener(writer_guid, self.my_guid, event);
+      }
+    }
   }
 
   pub fn set_requested_deadline_check_timer(&mut self) {
@@ -313,7 +327,7 @@ impl Reader {
     };
 
     let mut changes: Vec<DataReaderStatus> = vec![];
-    let now = Timestamp::now();
+    let now = Timestamp::monotonic();
     for writer_proxy in self.matched_writers.values_mut() {
       if let Some(last_change) = writer_proxy.last_change_timestamp() {
         let since_last = now.duration_since(last_change);
@@ -634,6 +648,10 @@ impl Reader {
     if !is_valid_sequence_number(seq_num) || !self.may_assemble(writer_guid, datafrag) {
       return;
     }
+    if datafrag.data_size as usize > self.fragment_budget.max_sample_size() {
+      self.skip_too_large_sample(writer_guid, datafrag);
+      return;
+    }
     let receive_timestamp = Timestamp::now();
     //trace!("DATAFRAG received topic={:?}", self.topic_name);
 
@@ -679,6 +697,7 @@ impl Reader {
 
     // Feed to fragment assembler ...
     let writer_seq_num = datafrag.writer_sn; // for borrow checker
+    let was_begun = self.is_frag_partially_received(writer_guid, seq_num);
     let completed_dds_data = self
       .fragment_assembler_mutable(writer_guid)
       .new_datafrag(datafrag, datafrag_flags);
@@ -695,7 +714,56 @@ impl Reader {
         writer_seq_num,
       );
     } else {
+      if !was_begun
+        && self.reliability != policy::Reliability::BestEffort
+        && self.is_frag_partially_received(writer_guid, seq_num)
+        && self
+          .matched_writer(writer_guid)
+          .is_some_and(|writer_proxy| writer_proxy.is_plausible(seq_num))
+      {
+        self.tell_listener(
+          writer_guid,
+          ReceptionEvent::Begun {
+            sequence_number: seq_num,
+          },
+        );
+      }
       self.garbage_collect_fragments();
+    }
+  }
+
+  // A sample that can never be assembled counts as received: a reliable reader
+  // that waited for it would never hand over any later sample of its writer.
+  fn skip_too_large_sample(&mut self, writer_guid: GUID, datafrag: &DataFrag) {
+    let sequence_number = datafrag.writer_sn;
+    let Some(writer_proxy) = self.matched_writer_mut(writer_guid) else {
+      return;
+    };
+    if !writer_proxy.is_plausible(sequence_number) {
+      return;
+    }
+    writer_proxy.received_changes_add(sequence_number, Timestamp::monotonic());
+    let all_ackable_before = writer_proxy.all_ackable_before();
+    let size = datafrag.data_size as usize;
+    let limit = self.fragment_budget.max_sample_size();
+    warn_sparsely!(
+      "Sample of {size} bytes is larger than the limit of {limit} bytes. Skipping. topic={:?}",
+      self.topic_name
+    );
+    self.tell_listener(
+      writer_guid,
+      ReceptionEvent::TooLarge {
+        sequence_number,
+        size,
+        limit,
+      },
+    );
+    let marker_moved = self.reliability != policy::Reliability::BestEffort
+      && self
+        .acquire_the_topic_cache_guard()
+        .mark_reliably_received_before(writer_guid, all_ackable_before);
+    if marker_moved {
+      self.notify_cache_change();
     }
   }
 
@@ -727,7 +795,7 @@ impl Reader {
     // fragment assemblers and discard those assembly buffers whose
     // creation / modification timestamps look like it is no longer receiving
     // data and can therefore be discarded.
-    let now = Timestamp::now();
+    let now = Timestamp::monotonic();
     if now - self.last_fragment_garbage_collect > MIN_FRAGMENT_GC_INTERVAL {
       self.last_fragment_garbage_collect = now;
 
@@ -795,7 +863,7 @@ impl Reader {
           }
         }
         // Add the change and get the instant
-        writer_proxy.received_changes_add(writer_sn, receive_timestamp);
+        writer_proxy.received_changes_add(writer_sn, Timestamp::monotonic());
       } else {
         // no writer proxy found
         debug!(
@@ -990,11 +1058,19 @@ impl Reader {
           heartbeat.first_sn,
           heartbeat.last_sn,
           heartbeat.count,
-          Timestamp::now(),
+          Timestamp::monotonic(),
         ) {
           // Already seen and processed, or not credible.
           return false;
         }
+
+        this.tell_listener(
+          writer_guid,
+          ReceptionEvent::Announced {
+            first: heartbeat.first_sn,
+            last: heartbeat.last_sn,
+          },
+        );
 
         // remove changes until first_sn.
         writer_proxy.irrelevant_changes_up_to(heartbeat.first_sn);
@@ -1577,6 +1653,8 @@ impl fmt::Debug for Reader {
 mod tests {
   use std::sync::RwLock;
 
+  use bytes::Bytes;
+
   use crate::{
     dds::{qos::policy::Reliability, statusevents::sync_status_channel, typedesc::TypeDesc},
     polling::{new_shared_timer, wake_channel, LoopWaker},
@@ -2062,6 +2140,120 @@ mod tests {
     reader.handle_gap_msg(&gap, &mr_state);
     let proxy = reader.matched_writer(writer_guid).unwrap();
     assert_eq!(proxy.all_ackable_before(), SequenceNumber::new(6));
+  }
+
+  // A reliable reader that waited for a sample that it can never assemble would
+  // hand over none of those behind it.
+  #[test]
+  fn a_too_large_sample_is_skipped_and_the_listener_hears_of_it_and_of_announcements() {
+    let dds_cache = Arc::new(RwLock::new(DDSCache::new()));
+    let topic_name = "test_name";
+    let qos_policy = QosPolicyBuilder::new()
+      .reliability(Reliability::Reliable {
+        max_blocking_time: Duration::from_millis(100),
+      })
+      .build();
+    let topic_cache_handle = dds_cache.write().unwrap().add_new_topic(
+      topic_name.to_string(),
+      TypeDesc::new("test_type".to_string()),
+      &qos_policy,
+    );
+    let (notification_sender, _notification_receiver) =
+      crate::mio_source::notification_channel(100);
+    let (_notification_event_source, notification_event_sender) =
+      mio_source::make_poll_channel().unwrap();
+    let (status_sender, _status_receiver) = sync_status_channel::<DataReaderStatus>(4).unwrap();
+    let (participant_status_sender, _participant_status_receiver) =
+      sync_status_channel(16).unwrap();
+    let (_reader_command_sender, reader_command_receiver) =
+      wake_channel::<ReaderCommand>(10, &LoopWaker::new());
+    let reader_guid = GUID::dummy_test_guid(EntityKind::READER_NO_KEY_USER_DEFINED);
+    let reader_ing = ReaderIngredients {
+      guid: reader_guid,
+      notification_sender,
+      status_sender,
+      topic_name: topic_name.to_string(),
+      topic_cache_handle,
+      like_stateless: false,
+      qos_policy: qos_policy.clone(),
+      data_reader_command_receiver: reader_command_receiver,
+      data_reader_waker: Arc::new(Mutex::new(None)),
+      poll_event_sender: notification_event_sender,
+      security_plugins: None,
+      discovery_notify: None,
+    };
+    let mut reader = Reader::new(
+      reader_ing,
+      Rc::new(UDPSender::new(0).unwrap()),
+      new_shared_timer(),
+      participant_status_sender,
+      Rc::new(FragmentBudget::new(4096)),
+    );
+    let heard = Arc::new(Mutex::new(Vec::new()));
+    let hears = Arc::clone(&heard);
+    reader.set_reception_listener(Some(Arc::new(move |_, _, event| {
+      hears.lock().unwrap().push(event);
+    })));
+
+    let writer_guid = GUID::dummy_test_guid(EntityKind::WRITER_NO_KEY_USER_DEFINED);
+    let mr_state = MessageReceiverState {
+      source_guid_prefix: writer_guid.prefix,
+      ..Default::default()
+    };
+    reader.matched_writer_add(
+      writer_guid,
+      EntityId::UNKNOWN,
+      mr_state.unicast_reply_locator_list.to_vec(),
+      mr_state.multicast_reply_locator_list.to_vec(),
+      &qos_policy,
+    );
+    let sn = SequenceNumber::new;
+    let mut fragment = |number: i64, data_size: u32| {
+      let datafrag = DataFrag {
+        writer_id: writer_guid.entity_id,
+        writer_sn: sn(number),
+        fragment_starting_num: FragmentNumber::new(1),
+        fragments_in_submessage: 1,
+        fragment_size: 1024,
+        data_size,
+        serialized_payload: Bytes::from(vec![0; 1024]),
+        ..Default::default()
+      };
+      for _ in 0..2 {
+        reader.handle_datafrag_msg(&datafrag, BitFlags::empty(), &mr_state);
+      }
+      reader
+        .matched_writer(writer_guid)
+        .unwrap()
+        .all_ackable_before()
+    };
+    assert_eq!(fragment(1, 5000), sn(2), "acknowledged");
+    assert_eq!(fragment(2, 2048), sn(2), "begun");
+    let heartbeat = Heartbeat {
+      reader_id: EntityId::UNKNOWN,
+      writer_id: writer_guid.entity_id,
+      first_sn: sn(1),
+      last_sn: sn(3),
+      count: 1,
+    };
+    reader.handle_heartbeat_msg(&heartbeat, true, &mr_state);
+    assert_eq!(
+      *heard.lock().unwrap(),
+      [
+        ReceptionEvent::TooLarge {
+          sequence_number: sn(1),
+          size: 5000,
+          limit: 4096
+        },
+        ReceptionEvent::Begun {
+          sequence_number: sn(2)
+        },
+        ReceptionEvent::Announced {
+          first: sn(1),
+          last: sn(3)
+        },
+      ]
+    );
   }
 
   #[test]

@@ -580,8 +580,10 @@ impl RtpsReaderProxy {
     self.unsent_changes.len()
   }
 
+  /// Samples from here on are due to this Reader. A volatile Reader is not owed
+  /// what was written before it matched.
   pub fn acked_up_to_before(&self) -> SequenceNumber {
-    self.all_acked_before
+    max(self.all_acked_before, self.pending_gap_before)
   }
 
   // Fragment handling

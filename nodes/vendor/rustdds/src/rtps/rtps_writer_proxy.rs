@@ -77,7 +77,7 @@ pub(crate) struct RtpsWriterProxy {
 
   // These are used for quick tracking of
   last_received_sequence_number: SequenceNumber,
-  last_received_timestamp: Timestamp,
+  last_received_timestamp: Timestamp, // monotonic
 
   // Highest sequence number that the Writer has credibly used, by DATA or
   // HEARTBEAT. `None` until the first of them: a Writer may be old when we match.

@@ -1274,7 +1274,15 @@ impl Writer {
           // everything means the reader does not know what we have, typically a
           // preemptive ACKNACK from a reader that matched us after our HEARTBEAT.
           // Answer now instead of at the next heartbeat period.
-          if an.reader_sn_state.iter().next().is_none() && reader_proxy.all_acked_before <= last_seq
+          //
+          // Before the first sample, a preemptive ACKNACK is answered, too. CycloneDDS
+          // takes what the first HEARTBEAT announces as written before the match, so
+          // that one together with samples would cost it those that are not in the
+          // same datagram. Nothing is missing then, so the answer is final: no ACKNACK
+          // answers it in turn.
+          let is_unwritten = last_seq < SequenceNumber::new(1);
+          if an.reader_sn_state.iter().next().is_none()
+            && (is_unwritten || reader_proxy.all_acked_before <= last_seq)
           {
             let hb_message = MessageBuilder::new()
               .ts_msg(self.endianness, Some(Timestamp::now()))
@@ -1285,7 +1293,7 @@ impl Writer {
                 self.next_heartbeat_count(),
                 self.endianness,
                 reader_guid.entity_id,
-                false, // final_flag: request ACKNACK
+                is_unwritten, // final_flag: unset requests ACKNACK
                 false, // liveliness_flag
               )
               .add_header_and_build(self.my_guid.prefix);
@@ -1340,9 +1348,8 @@ impl Writer {
   // matched readers changes. `None` means there are no reliable readers, so the
   // writer is never back-pressured.
   //
-  // A reader proxy reports `acked_up_to_before == 0` until its first ACKNACK;
-  // `WriterSendBuffer::set_acked_frontier` reads that as 1, since sequence
-  // numbers start at 1.
+  // Until its first ACKNACK, a reader proxy reports the first sequence number due
+  // to it: 1, or the one after the match if it is volatile.
   //
   // TODO: On first match the first missed sample is only recovered via
   // periodic-heartbeat repair, which can take ~1 s under load.
@@ -1352,13 +1359,16 @@ impl Writer {
       self.send_buffer.set_acked_frontier(None);
       return;
     }
-    let frontier = self
-      .readers
-      .values()
-      .filter(|rp| rp.may_block && rp.qos().is_reliable())
-      .map(RtpsReaderProxy::acked_up_to_before)
-      .min();
+    let reliable = || {
+      self
+        .readers
+        .values()
+        .filter(|rp| rp.may_block && rp.qos().is_reliable())
+    };
+    let frontier = reliable().map(RtpsReaderProxy::acked_up_to_before).min();
+    let all_heard = reliable().all(|rp| rp.last_acknack_count.is_some());
     self.send_buffer.set_acked_frontier(frontier);
+    self.send_buffer.set_all_readers_heard(all_heard);
   }
 
   // Send out missing data
@@ -3077,6 +3087,42 @@ mod tests {
       // Alone, it counts as little.
       fixture.writer.reader_lost(waited_for);
       assert!(send_buffer.is_acked_through(all));
+    }
+
+    // A reader that discovers the Writer after the HEARTBEAT of the match asks for
+    // one before the first sample.
+    #[test]
+    fn a_preemptive_acknack_before_the_first_sample_is_answered_by_a_heartbeat() {
+      let mut f = Fixture::user(0, 8, None);
+      let count = |f: &Fixture| f.writer.heartbeat_message_counter.load(atomic::Ordering::SeqCst);
+      let before = count(&f);
+      f.ack_nack([], 1);
+      assert_eq!(count(&f), before + 1);
+    }
+
+    #[test]
+    fn what_a_reader_has_not_acknowledged_is_counted_from_its_match() {
+      let mut f = Fixture::user(10, 8, None);
+      let send_buffer = f.writer.send_buffer.clone();
+      assert_eq!(send_buffer.unacknowledged(), 10);
+      assert!(!send_buffer.all_readers_heard());
+      f.ack_nack(3..=4, 1);
+      assert_eq!(send_buffer.unacknowledged(), 10);
+      assert!(send_buffer.all_readers_heard());
+      f.writer.reader_lost(f.reader_guid);
+      assert_eq!(send_buffer.unacknowledged(), 0);
+
+      // A volatile Writer owes a late reader nothing.
+      f.writer.qos_policies = f.writer.qos_policies.modify_by(
+        &QosPolicyBuilder::new()
+          .durability(Durability::Volatile)
+          .build(),
+      );
+      let qos = f.writer.qos_policies.clone();
+      let late = RtpsReaderProxy::new(f.reader_guid, qos.clone(), false);
+      f.writer.update_reader_proxy(&late, &qos);
+      assert_eq!(send_buffer.unacknowledged(), 0);
+      assert!(!send_buffer.all_readers_heard());
     }
 
     // A repeated ACKNACK count is a copy and changes nothing; a new count does.

@@ -46,6 +46,9 @@ struct Inner {
   // Maintained by the Writer (event loop) via `set_acked_frontier`.
   acked_before: SequenceNumber,
   reliable_readers_present: bool,
+  // Every matched reliable reader has sent an ACKNACK: it has matched this Writer,
+  // too.
+  all_readers_heard: bool,
 
   // nonblocking-transmit: the unsent backlog limit. The Writer advances
   // `sent_frontier` as it actually transmits samples; when the network socket
@@ -127,6 +130,7 @@ impl WriterSendBuffer {
           window_limit: window_limit.max(1),
           acked_before: SequenceNumber::new(1),
           reliable_readers_present: false,
+          all_readers_heard: true,
           backlog_limit: backlog_limit.max(1),
           sent_frontier: SequenceNumber::new(0),
           max_retain: max_retain.max(1),
@@ -339,6 +343,11 @@ impl WriterSendBuffer {
     }
   }
 
+  /// Tell whether every matched reliable reader has sent an ACKNACK.
+  pub fn set_all_readers_heard(&self, all_heard: bool) {
+    self.shared.inner.lock().unwrap().all_readers_heard = all_heard;
+  }
+
   /// nonblocking-transmit: advance the "actually transmitted" frontier. Called
   /// by the Writer as it puts samples on the wire. Wakes producers parked on a
   /// full unsent backlog when the frontier advances.
@@ -402,6 +411,21 @@ impl WriterSendBuffer {
   pub fn is_acked_through(&self, target: SequenceNumber) -> bool {
     let inner = self.shared.inner.lock().unwrap();
     !inner.reliable_readers_present || inner.acked_before > target
+  }
+
+  /// How many samples some matched reliable reader has not acknowledged.
+  pub fn unacknowledged(&self) -> u64 {
+    let inner = self.shared.inner.lock().unwrap();
+    if !inner.reliable_readers_present {
+      return 0;
+    }
+    let unacked = i64::from(inner.last_seq) - i64::from(inner.acked_before) + 1;
+    u64::try_from(unacked).unwrap_or(0)
+  }
+
+  /// Has every matched reliable reader sent an ACKNACK?
+  pub fn all_readers_heard(&self) -> bool {
+    self.shared.inner.lock().unwrap().all_readers_heard
   }
 
   /// Synchronously wait until everything up to `target` is acknowledged, or

@@ -2,7 +2,7 @@ use std::{
   cmp::max,
   collections::{btree_map, BTreeMap, HashMap},
   iter,
-  ops::Bound::{Excluded, Included},
+  ops::Bound::{Excluded, Included, Unbounded},
   sync::{Arc, Mutex},
 };
 
@@ -19,7 +19,7 @@ use crate::{
     typedesc::TypeDesc,
     CreateError, CreateResult,
   },
-  rtps::constant::MAX_WITHHELD_BYTES_PER_TOPIC,
+  rtps::constant::{MAX_BYTES_BEYOND_DEPTH_PER_TOPIC, MAX_WITHHELD_BYTES_PER_TOPIC},
   structure::{sequence_number::SequenceNumber, time::Timestamp},
   GUID,
 };
@@ -123,6 +123,9 @@ pub(crate) struct TopicCache {
   max_keep_samples: i32, // from QoS, for quick, repeated access
   // TODO: Change this to Option<u32>, where None means "no limit".
 
+  // Payload bytes of `changes`.
+  payload_bytes: usize,
+
   // The main content of the cache is in this map.
   // Timestamp is assumed to be unique id over all the CacheChanges. Uniqueness is
   // enforced on insert (see `add_change_internal`) by never issuing a key that is
@@ -142,7 +145,8 @@ pub(crate) struct TopicCache {
   // takes to process several aggregated DATA submessages, so two distinct samples
   // may carry the same instant. We then bump the key by one tick (~0.233 ns) so it
   // stays unique. This cannot outrun real time: regaining a whole second of skew
-  // would need 2^32 receives within it.
+  // would need 2^32 receives within it. Readers take changes in the order of
+  // keys, whatever the clock shows then.
   last_added_instant: Timestamp,
 
   // Changes that were offered so far, to collect garbage now and then.
@@ -168,6 +172,7 @@ impl TopicCache {
       min_keep_samples: History::KeepLast { depth: 1 }, /* dummy value, next call will overwrite
                                                          * this */
       max_keep_samples: 1, // dummy value, next call will overwrite this
+      payload_bytes: 0,
       changes: BTreeMap::new(),
       changes_reallocated_up_to: Timestamp::ZERO,
       last_added_instant: Timestamp::ZERO,
@@ -374,11 +379,13 @@ impl TopicCache {
       self.last_added_instant = key;
 
       self.insert_sn(key, &cache_change);
+      self.payload_bytes += payload_size;
       self.changes.insert(key, cache_change).inspect(|old_cc| {
         // Should be unreachable now that keys are strictly monotonic, but keep the
         // guard rather than silently overwriting if the invariant is ever broken.
         error!("DDSHistoryCache already contained element with key {key:?} !!!");
         self.remove_sn(old_cc);
+        self.payload_bytes -= old_cc.data_value.payload_size();
       })
     }
   }
@@ -399,28 +406,16 @@ impl TopicCache {
       .insert(cc.sequence_number, instant);
   }
 
-  pub fn get_changes_in_range_best_effort<'a>(
+  // All that was received after `start_instant`, which is the key of a change.
+  pub fn get_changes_after_best_effort<'a>(
     &'a self,
     start_instant: Timestamp,
-    end_instant: Timestamp,
-  ) -> ChangesInRangeBestEffort<'a, impl FnMut(BestEffortMap<'a>) -> ChangesItem<'a>> {
-    // Sanity check
-    let start_instant = if start_instant <= end_instant {
-      // sane case
-      start_instant
-    } else {
-      // insane case
-      error!(
-        "get_changes_in_range_best_effort: Did my clock jump backwards? start={start_instant:?} \
-         end={end_instant:?}"
-      );
-      end_instant
-    };
-
-    // Get result as tree range
+  ) -> ChangesAfterBestEffort<'a, impl FnMut(BestEffortMap<'a>) -> ChangesItem<'a>> {
+    // Keys are in the order of reception, so there is nothing to compare with
+    // the clock: a key may be later than it shows.
     self
       .changes
-      .range((Excluded(start_instant), Included(end_instant)))
+      .range((Excluded(start_instant), Unbounded))
       .map(|(i, c)| (*i, c))
   }
 
@@ -457,9 +452,7 @@ impl TopicCache {
     if reliable {
       ChangesInRange::Reliable(self.get_changes_in_range_reliable(last_read_sn))
     } else {
-      ChangesInRange::BestEffort(
-        self.get_changes_in_range_best_effort(latest_instant, Timestamp::now()),
-      )
+      ChangesInRange::BestEffort(self.get_changes_after_best_effort(latest_instant))
     }
   }
   fn reliable_before(&self, writer: GUID) -> SequenceNumber {
@@ -501,7 +494,10 @@ impl TopicCache {
 
     // We must remove at least enough to stay within max limit,
     // must_remove_count = sample_count - max_keep_samples
-    let must_remove_count = sample_count.saturating_sub(self.max_keep_samples as usize);
+    let must_remove_count = max(
+      sample_count.saturating_sub(self.max_keep_samples as usize),
+      self.count_beyond_depth_over_bytes(),
+    );
     // Saturating sub takes care that this does not underflow below zero.
 
     let may_remove_count = match self.min_keep_samples {
@@ -552,14 +548,17 @@ impl TopicCache {
       let to_remove = std::mem::replace(&mut self.changes, to_retain);
 
       // update also SequenceNumber map
-      to_remove.values().for_each(|r| self.remove_sn(r));
+      for removed in to_remove.values() {
+        self.remove_sn(removed);
+        self.payload_bytes -= removed.data_value.payload_size();
+      }
     }
 
     // Now, reallocate old cache changes
     let reallocate_timeout = crate::Duration::from_secs(5);
     let now = Timestamp::now();
 
-    // Take max to avoid crash if clock jumps backward.
+    // A change is reallocated once.
     let reallocate_limit = max(now - reallocate_timeout, self.changes_reallocated_up_to);
 
     self
@@ -573,6 +572,27 @@ impl TopicCache {
     self.changes_reallocated_up_to = reallocate_limit;
   }
 
+  // The number of oldest samples to remove so that the rest stays within
+  // MAX_BYTES_BEYOND_DEPTH_PER_TOPIC, but none within the History depth. So
+  // ResourceLimits above the depth let a Reader fall behind in a burst of small
+  // samples, and large ones do not fill the memory.
+  fn count_beyond_depth_over_bytes(&self) -> usize {
+    let History::KeepLast { depth } = self.min_keep_samples else {
+      return 0;
+    };
+    let mut bytes = self.payload_bytes;
+    self
+      .changes
+      .values()
+      .take(self.changes.len().saturating_sub(depth as usize))
+      .take_while(|cc| {
+        let is_over = bytes > MAX_BYTES_BEYOND_DEPTH_PER_TOPIC;
+        bytes -= cc.data_value.payload_size();
+        is_over
+      })
+      .count()
+  }
+
   pub fn topic_name(&self) -> String {
     self.topic_name.clone()
   }
@@ -583,7 +603,7 @@ impl TopicCache {
   }
 }
 
-type ChangesInRangeBestEffort<'a, F> = iter::Map<btree_map::Range<'a, Timestamp, CacheChange>, F>;
+type ChangesAfterBestEffort<'a, F> = iter::Map<btree_map::Range<'a, Timestamp, CacheChange>, F>;
 type ChangesInRangeReliable<'a, F1, F2> = iter::FilterMap<
   iter::FlatMap<
     btree_map::Iter<'a, GUID, BTreeMap<SequenceNumber, Timestamp>>,
@@ -603,7 +623,7 @@ type ReliableFlatItem<'a> = btree_map::Range<'a, SequenceNumber, Timestamp>;
 type ChangesItem<'a> = (Timestamp, &'a CacheChange);
 
 pub(crate) enum ChangesInRange<'a, F, F1, F2> {
-  BestEffort(ChangesInRangeBestEffort<'a, F>),
+  BestEffort(ChangesAfterBestEffort<'a, F>),
   Reliable(ChangesInRangeReliable<'a, F1, F2>),
 }
 
@@ -635,11 +655,14 @@ mod tests {
     thread,
   };
 
-  use super::{DDSCache, TopicCache};
+  use super::{DDSCache, TopicCache, MAX_BYTES_BEYOND_DEPTH_PER_TOPIC};
   use crate::{
     dds::{
       ddsdata::DDSData,
-      qos::{policy::History, QosPolicies, QosPolicyBuilder},
+      qos::{
+        policy::{History, ResourceLimits},
+        QosPolicies, QosPolicyBuilder,
+      },
       typedesc::TypeDesc,
       with_key::datawriter::WriteOptions,
     },
@@ -720,6 +743,49 @@ mod tests {
       TypeDesc::new("ShapeType".to_string()),
       &QosPolicyBuilder::new().history(History::KeepAll).build(),
     )
+  }
+
+  // Resource limits above the depth are room for bursts, as long as the samples
+  // are small.
+  #[test]
+  fn beyond_the_depth_only_small_samples_are_kept_up_to_the_resource_limits() {
+    let kept = |size: usize| {
+      let qos = QosPolicyBuilder::new()
+        .history(History::KeepLast { depth: 10 })
+        .resource_limits(ResourceLimits {
+          max_samples: 1000,
+          max_instances: 1,
+          max_samples_per_instance: 1000,
+        })
+        .build();
+      let mut topic_cache = TopicCache::new(
+        "Square".to_string(),
+        TypeDesc::new("ShapeType".to_string()),
+        &qos,
+      );
+      let writer = user_writer();
+      for sn in 1..=1100 {
+        topic_cache.mark_reliably_received_before(writer, SequenceNumber::new(sn + 1));
+        add_after_missing_first(&mut topic_cache, writer, sn, size);
+      }
+      topic_cache.remove_changes_before(Timestamp::ZERO);
+      assert_eq!(
+        topic_cache.payload_bytes,
+        topic_cache
+          .changes
+          .values()
+          .map(|cc| cc.data_value.payload_size())
+          .sum::<usize>()
+      );
+      topic_cache.changes.len()
+    };
+    assert_eq!(kept(100), 1000);
+    let of_100_kib = kept(100 << 10);
+    assert!(
+      (150..=MAX_BYTES_BEYOND_DEPTH_PER_TOPIC / (100 << 10)).contains(&of_100_kib),
+      "{of_100_kib}"
+    );
+    assert_eq!(kept(2 << 20), 10);
   }
 
   fn user_writer() -> GUID {
@@ -809,6 +875,34 @@ mod tests {
     assert!(topic_cache.changes.len() <= topic_cache.max_keep_samples as usize + 1);
   }
 
+  // The wall clock was set back by a minute between the second and third sample.
+  #[test]
+  fn samples_are_read_in_the_order_of_reception_whatever_the_clock_shows() {
+    let mut topic_cache = keep_all_topic_cache();
+    let minute = crate::Duration::from_secs(60);
+    let now = Timestamp::now();
+    let received = [now + minute, now + minute, now, now];
+    let mut latest = Timestamp::ZERO;
+    for (sn, receive_timestamp) in (1..).zip(received) {
+      topic_cache.add_change(
+        &receive_timestamp,
+        CacheChange::new(
+          user_writer(),
+          SequenceNumber::new(sn),
+          WriteOptions::default(),
+          DDSData::new(SerializedPayload::default()),
+        ),
+      );
+      let none_read = BTreeMap::new();
+      let new: Vec<_> = topic_cache
+        .get_changes_in_range(false, latest, &none_read)
+        .map(|(key, cc)| (key, i64::from(cc.sequence_number)))
+        .collect();
+      assert_eq!(new.iter().map(|(_, sn)| *sn).collect::<Vec<_>>(), [sn]);
+      latest = new[0].0;
+    }
+  }
+
   #[test]
   fn create_dds_cache_and_topic_cache() {
     // Create DDS cache
@@ -869,10 +963,7 @@ mod tests {
       topic_cache_handle
         .lock()
         .unwrap()
-        .get_changes_in_range_best_effort(
-          crate::Timestamp::now() - crate::Duration::from_secs(23),
-          crate::Timestamp::now()
-        )
+        .get_changes_after_best_effort(Timestamp::ZERO)
         .count(),
       3
     );

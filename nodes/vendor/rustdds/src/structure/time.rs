@@ -1,4 +1,11 @@
-use std::ops::{Add, Sub};
+use std::{
+  ops::{Add, Sub},
+  sync::{
+    atomic::{AtomicU64, Ordering},
+    OnceLock,
+  },
+  time::{Instant, SystemTime},
+};
 
 use speedy::{Readable, Writable};
 use serde::{Deserialize, Serialize};
@@ -55,13 +62,27 @@ impl Timestamp {
     fraction: 0xFFFF_FFFE,
   };
 
+  /// Wall-clock time that never goes back within this process.
+  ///
+  /// If the clock of the host is set back, the time goes on from where it was,
+  /// so that the order of timestamps is the order in which they were made. DDS
+  /// requires that of source timestamps (`register_instance_w_timestamp`), and
+  /// caches order samples by the time of reception. If the clock is set forward, the time follows.
+  /// A clock before 2 January 1970 counts as one that was there when it was
+  /// first read.
   pub fn now() -> Self {
-    Self::try_from(Utc::now()).unwrap_or_else(|e| {
-      error!("{e}");
-      // We get an invalid timestamp, if the system clock is set more than
-      // ~584 years from 1970 in either direction.
-      Timestamp::INVALID
-    })
+    static TIME_OF_ORIGIN: AtomicU64 = AtomicU64::new(EARLIEST);
+    let wall = SystemTime::now()
+      .duration_since(SystemTime::UNIX_EPOCH)
+      .map_or(0, |d| d.as_nanos() as u64);
+    // Read after the wall clock: a pause in between cannot put the time ahead.
+    let elapsed = origin().elapsed().as_nanos() as u64;
+    Self::from_nanos(advance(&TIME_OF_ORIGIN, wall, elapsed))
+  }
+
+  /// Time by the monotonic clock, for differences within this process.
+  pub(crate) fn monotonic() -> Self {
+    Self::from_nanos(EARLIEST + origin().elapsed().as_nanos() as u64)
   }
 
   pub fn to_ticks(self) -> u64 {
@@ -85,6 +106,28 @@ impl Timestamp {
   pub fn duration_since(&self, since: Self) -> Duration {
     *self - since
   }
+}
+
+// Both clocks are a day old at first, ns: timeouts are subtracted from them.
+const EARLIEST: u64 = 86_400_000_000_000;
+
+fn origin() -> Instant {
+  static ORIGIN: OnceLock<Instant> = OnceLock::new();
+  *ORIGIN.get_or_init(Instant::now)
+}
+
+// The time after `elapsed` ns since the origin of the monotonic clock, whose
+// wall-clock time is the latest that any reading of both clocks gave.
+fn advance(time_of_origin: &AtomicU64, wall: u64, elapsed: u64) -> u64 {
+  let time = wall.saturating_sub(elapsed);
+  time_of_origin.fetch_max(time, Ordering::AcqRel).max(time) + elapsed
+}
+
+/// Wall-clock time as [`Timestamp::now`] tells it.
+pub(crate) fn utc_now() -> DateTime<Utc> {
+  let ticks = Timestamp::now().to_ticks();
+  let nanos = ((ticks & 0xffff_ffff) * 1_000_000_000) >> 32;
+  DateTime::from_timestamp((ticks >> 32) as i64, nanos as u32).unwrap_or_default()
 }
 
 /// Error from this means "out of range"
@@ -151,6 +194,28 @@ impl Add<Duration> for Timestamp {
 #[cfg(test)]
 mod tests {
   use super::*;
+
+  #[test]
+  fn time_goes_on_when_the_wall_clock_is_set_back_and_follows_when_it_is_set_forward() {
+    let time_of_origin = AtomicU64::new(0);
+    let read = |wall, elapsed| advance(&time_of_origin, wall, elapsed);
+    assert_eq!(read(1000, 0), 1000);
+    assert_eq!(read(1005, 5), 1005);
+    // set back by 900, then before 1970
+    assert_eq!(read(110, 10), 1010);
+    assert_eq!(read(0, 20), 1020);
+    // set forward beyond what it was
+    assert_eq!(read(5030, 30), 5030);
+    assert_eq!(read(1040, 40), 5040);
+  }
+
+  #[test]
+  fn timestamps_of_a_process_are_in_the_order_of_their_making() {
+    let made: Vec<_> = (0..1000).map(|_| Timestamp::now()).collect();
+    assert!(made.is_sorted());
+    let now = Utc::now().timestamp();
+    assert!((utc_now().timestamp() - now).abs() <= 1);
+  }
 
   serialization_test!( type = Timestamp,
   {

@@ -76,7 +76,6 @@ impl Score {
         Some((self.bias()?.powi(2) + self.squares / self.solved as f64).sqrt())
     }
 
-    /// Mean magnitude of the error.
     pub(super) fn mean_absolute(&self) -> Option<f64> {
         (self.solved > 0).then(|| self.absolute / self.solved as f64)
     }

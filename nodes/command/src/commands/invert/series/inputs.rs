@@ -2,6 +2,7 @@
 
 use super::super::args::Args;
 use super::super::speed_table::SpeedLine;
+use super::super::speeds::NO_DENSITY;
 use grainlab_core::Material;
 use grainlab_emt::{ContactKind, SeriesRow, SpeedMode, SpeedSeries, UNKNOWN_SIZE_SPREAD};
 use std::f64::consts::PI;
@@ -57,10 +58,7 @@ impl Args {
                     PRESSURES[0], PRESSURES[1]
                 )));
             }
-            let packed = line.grain_density.zip(line.phi).map(|(density, phi)| density * phi);
-            let density = line.density.or(packed).or(self.density).ok_or_else(|| {
-                fault("column density is empty: give it, or grain_density and phi, or --density".to_owned())
-            })?;
+            let density = line.density().or(self.density).ok_or_else(|| fault(NO_DENSITY.to_owned()))?;
             for (column, value) in [("grain_density", line.grain_density), ("density", Some(density))] {
                 if let Some(value) = value.filter(|v| !(DENSITIES[0]..DENSITIES[1]).contains(v)) {
                     return Err(fault(format!(

@@ -3,7 +3,9 @@
 use super::super::speed_table::in_radians;
 use super::sample::Sample;
 use grainlab_console::{CsvText, Table, fixed, wrapped};
-use grainlab_emt::{Interval, PressureEstimate, SeriesEstimate, SeriesPrior, SeriesRow, SpeedMode};
+use grainlab_emt::{
+    Doubted, Interval, PressureEstimate, SeriesEstimate, SeriesPrior, SeriesRow, SpeedMode, Status,
+};
 use std::f64::consts::PI;
 
 /// Share of a posterior at an end of a range from which it is said.
@@ -209,12 +211,18 @@ pub(super) fn csv(samples: &[Sample]) -> String {
             let all = z.into_iter().chain(eps).chain(pair(p.eps_stiffness)).chain(rest);
             [Some(p.pressure)].into_iter().chain(all).for_each(|v| text.number(v));
             text.number(Some(p.z_beyond));
-            text.cell(sample.status);
+            text.cell(status(sample, p).name());
             text.cell(&[&sample.doubts[..], &sample.notes].concat().join("; "));
             text.end();
         }
     }
     text.finish()
+}
+
+/// Returns the status of one pressure: the status of the sample, except that a pressure inside the calibration is not extrapolated.
+fn status(sample: &Sample, estimate: &PressureEstimate) -> Status {
+    let is_inside = sample.status == Status::Extrapolated && estimate.outside.is_none();
+    if is_inside { Status::Ok } else { sample.status }
 }
 
 fn chance(p: f64) -> String {
@@ -256,14 +264,46 @@ pub(super) fn contradiction(sample: &Sample) -> String {
             "the stiffness is {ratio} times that of the law: check pressure, material, density and units"
         ));
     }
-    if sample.sensitivity.is_contradictory() {
+    if e.has_unequal_twins() {
+        let p = chance(e.p_twins.unwrap_or(0.0));
+        faults.push(format!(
+            "SV along, SV across and SH along the axis are one modulus, and their speeds differ by more than their errors ({p}): check mode and direction"
+        ));
+    }
+    if sample.sensitivity.has_split_moduli() {
         faults.push("the bulk modulus and the shear modulus have no z in common: check the P speeds against the S speeds".to_owned());
     }
     faults.extend(contradicting_pressures(e));
+    faults.extend(sample.sensitivity.doubted.iter().filter(|d| d.is_decisive()).map(|d| without(sample, d)));
     if !rows.is_empty() {
         faults.push(format!("furthest from the others: {}", rows.join(", ")));
     }
     faults.join("; ")
+}
+
+/// z without rows that the others contradict.
+fn without(sample: &Sample, doubted: &Doubted) -> String {
+    let row = |n: usize| &sample.series.rows[n];
+    let at = kilopascals(row(doubted.rows[0]).pressure);
+    let left_out = match &doubted.rows[..] {
+        [n] => format!("line {} ({} at {at} kPa)", sample.lines[*n].line, mode(row(*n))),
+        _ => format!("the speeds at {at} kPa"),
+    };
+    let (of, [z, stddev]) = (&sample.estimate.pressures[doubted.place], doubted.z[doubted.place]);
+    format!(
+        "without {left_out}, z is {z:.2} +- {stddev:.2} at {} kPa, {:.1} stated standard deviations from {}",
+        kilopascals(of.pressure),
+        doubted.moved.abs(),
+        interval(&of.z, 2)
+    )
+}
+
+/// Sentences on pressures outside the packings of the calibration.
+fn outside(sample: &Sample) -> Option<String> {
+    let all: Vec<_> = sample.estimate.pressures.iter().filter(|p| p.outside.is_some()).collect();
+    let pressures: Vec<String> = all.iter().map(|p| kilopascals(p.pressure)).collect();
+    let first = all.first()?.outside?;
+    Some(format!("extrapolated at {} kPa: {first}", pressures.join(", ")))
 }
 
 /// z at the lowest and the highest pressure, as text.
@@ -291,15 +331,18 @@ fn returns(sample: &Sample) -> Vec<String> {
 }
 
 /// Reasons to doubt the result, and further sentences: on what is not determined, and what z depends on.
-pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> [Vec<String>; 2] {
+pub(super) fn notes(sample: &Sample, prior: &SeriesPrior, lowest_z: f64) -> [Vec<String>; 2] {
     let (e, s) = (&sample.estimate, &sample.sensitivity);
     let (mut doubts, mut notes) = (Vec::new(), Vec::new());
-    if sample.status == "contradictory" {
+    if sample.is_contradictory() {
         doubts.push(format!("contradictory: {}", contradiction(sample)));
     }
-    if sample.status != "contradictory" {
+    if !sample.is_contradictory() {
         doubts.extend(contradicting_pressures(e));
     }
+    doubts.extend(outside(sample));
+    let others = s.doubted.iter().filter(|d| !sample.is_contradictory() || !d.is_decisive());
+    doubts.extend(others.map(|d| without(sample, d)));
     let returns = returns(sample);
     if !returns.is_empty() {
         doubts.push(format!(
@@ -397,6 +440,13 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> [Vec<String>; 2] {
         doubts.push(format!(
             "up to {:.0} % of the posterior has z above 6.6, beyond the simulated packings: only the lower end of z is known there",
             100.0 * beyond
+        ));
+    }
+    let below = e.pressures.iter().map(|p| p.z_below).fold(0.0, f64::max);
+    if below > AT_END {
+        doubts.push(format!(
+            "up to {:.0} % of the posterior has z below {lowest_z:.2}, below the simulated packings: only the upper end of z is known there",
+            100.0 * below
         ));
     }
     if e.pressures.len() > 1 {

@@ -1,15 +1,16 @@
 //! One sample, and what is inferred of it.
 
 use super::super::speed_table::SpeedLine;
-use grainlab_emt::{Sensitivity, SeriesEstimate, SpeedSeries};
-use serde::Serialize;
+use grainlab_emt::{Sensitivity, SeriesEstimate, SpeedSeries, Status};
+use serde::{Serialize, Serializer};
 
 /// One sample with its answer.
 #[derive(Debug, Serialize)]
 pub(super) struct Sample {
     pub(super) sample: String,
     pub(super) contact: &'static str,
-    pub(super) status: &'static str,
+    #[serde(serialize_with = "named")]
+    pub(super) status: Status,
     pub(super) lines: Vec<SpeedLine>,
     #[serde(skip)]
     pub(super) series: SpeedSeries,
@@ -21,4 +22,14 @@ pub(super) struct Sample {
     pub(super) notes: Vec<String>,
     /// Reasons to doubt the result.
     pub(super) doubts: Vec<String>,
+}
+
+impl Sample {
+    pub(super) fn is_contradictory(&self) -> bool {
+        self.status == Status::Contradictory
+    }
+}
+
+fn named<S: Serializer>(status: &Status, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(status.name())
 }

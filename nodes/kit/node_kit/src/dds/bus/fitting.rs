@@ -1,23 +1,26 @@
 //! Writers that fit a subscription: messages of another type, or of another definition of the type, are not read by position.
 
 use super::{DdsBus, wire_name};
+use crate::announced::Announced;
 use crate::bus::SubscriptionId;
 use crate::bus_error::BusError;
+use crate::dds::graph::Graph;
 use crate::lock::lock;
 use crate::sample::Sample;
 use grainlab_msgs::{Guid, Topic, TypeInfo};
 
 impl DdsBus {
     /// True if a remote writer counts for a reader of this type: it is admitted, and its messages are read.
-    pub(super) fn counts(&self, writer: &Guid, info: &TypeInfo) -> bool {
-        self.gate.admits(writer) && self.graph.misfit(writer, info).is_none()
+    pub(super) fn counts(&self, graph: &Graph, writer: &Guid, info: &TypeInfo) -> bool {
+        self.gate.admits(writer) && graph.misfit(writer, info).is_none()
     }
 
     /// The next sample whose writer fits the type of the subscription; others are counted and said once.
     pub(super) fn take_fitting(&mut self, subscription: SubscriptionId) -> Result<Option<Sample>, BusError> {
         self.background_reader.seen();
         // A writer is known before its first sample, but perhaps not here yet.
-        self.changed |= self.follow_graph();
+        let mut follower = lock(&self.follower);
+        follower.follow();
         let subscriber = self.subscribers.get_mut(subscription.0).ok_or(BusError::Handle("take"))?;
         let reader = self.readers.get_mut(subscriber.reader).ok_or(BusError::Handle("take"))?;
         let mut inbox = lock(&reader.inbox);
@@ -27,7 +30,7 @@ impl DdsBus {
         let mut sample = inbox.take(subscriber.place)?;
         while let Some((writer, why)) = sample
             .as_ref()
-            .and_then(|s| Some((s.info.writer, self.graph.misfit(&s.info.writer, &reader.info)?)))
+            .and_then(|s| Some((s.info.writer, follower.graph.misfit(&s.info.writer, &reader.info)?)))
         {
             subscriber.refused += 1;
             if self.refused.insert((writer, subscription.0)) {
@@ -48,8 +51,22 @@ impl DdsBus {
     }
 
     /// Writers of other processes on a topic, sorted, of those that count.
-    pub(super) fn writers_of(&self, topic: &Topic, counts: impl Fn(&Guid) -> bool) -> Vec<Guid> {
+    pub(super) fn writers_of(&self, topic: &Topic, counts: impl Fn(&Graph, &Guid) -> bool) -> Vec<Guid> {
         let Ok(name) = self.names.resolve(topic.name) else { return Vec::new() };
-        self.graph.writers_of(&wire_name(&name), counts)
+        let graph = &lock(&self.follower).graph;
+        graph.writers_of(&wire_name(&name), |guid| counts(graph, guid))
+    }
+
+    /// Returns what writers announced to a subscription, without the writers whose samples do not fit its type.
+    pub(super) fn announced_to(&self, subscription: SubscriptionId) -> Vec<Announced> {
+        let reader = self.subscribers.get(subscription.0).and_then(|s| self.readers.get(s.reader));
+        let Some(reader) = reader else { return Vec::new() };
+        let mut all = self.gate.announced(reader.guid, reader.latched);
+        let graph = &lock(&self.follower).graph;
+        let is_refused = |writer: &Guid| {
+            self.refused.contains(&(*writer, subscription.0)) || graph.misfit(writer, &reader.info).is_some()
+        };
+        all.retain(|announced| !is_refused(&announced.writer));
+        all
     }
 }

@@ -129,6 +129,19 @@ where
   pub fn wait_for_acknowledgments(&self, max_wait: Duration) -> WriteResult<bool, ()> {
     self.keyed_datawriter.wait_for_acknowledgments(max_wait)
   }
+
+  /// The number of samples that some matched reliable DataReader has not
+  /// acknowledged, without waiting. Zero without matched DataReaders with Reliable
+  /// QoS.
+  pub fn unacknowledged_samples(&self) -> u64 {
+    self.keyed_datawriter.unacknowledged_samples()
+  }
+
+  /// True if every matched reliable DataReader has sent an ACKNACK. It has
+  /// discovered this DataWriter then, and gets every sample from now on.
+  pub fn is_known_to_matched_readers(&self) -> bool {
+    self.keyed_datawriter.is_known_to_matched_readers()
+  }
   /*
   // status queries
   /// Unimplemented. <b>Do not use</b>.

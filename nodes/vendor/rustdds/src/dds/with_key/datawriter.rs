@@ -459,6 +459,19 @@ where
     } // match
   }
 
+  /// The number of samples that some matched reliable DataReader has not
+  /// acknowledged, without waiting. Zero without matched DataReaders with Reliable
+  /// QoS.
+  pub fn unacknowledged_samples(&self) -> u64 {
+    self.send_buffer.unacknowledged()
+  }
+
+  /// True if every matched reliable DataReader has sent an ACKNACK. It has
+  /// discovered this DataWriter then, and gets every sample from now on.
+  pub fn is_known_to_matched_readers(&self) -> bool {
+    self.send_buffer.all_readers_heard()
+  }
+
   /*
 
   /// Unimplemented. <b>Do not use</b>.

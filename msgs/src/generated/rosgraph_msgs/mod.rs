@@ -1,5 +1,0 @@
-//! Messages of `rosgraph_msgs`.
-
-mod clock;
-
-pub use clock::Clock;

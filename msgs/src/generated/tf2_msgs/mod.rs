@@ -1,5 +1,0 @@
-//! Messages of `tf2_msgs`.
-
-mod tf_message;
-
-pub use tf_message::TFMessage;

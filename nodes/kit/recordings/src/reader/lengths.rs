@@ -1,0 +1,122 @@
+//! Checks lengths within a record against the available bytes: `mcap::parse_record` allocates the stated
+//! length of a text or a map before it reads it.
+
+use mcap::records::op;
+
+/// A part of a record.
+enum Part {
+    /// A fixed number of bytes.
+    Fixed(usize),
+    /// A length of four bytes and that many bytes of text.
+    Text,
+    /// A length of four bytes and that many bytes of entries of fixed size.
+    Entries,
+    /// A length of four bytes and that many bytes of pairs of texts.
+    Texts,
+    /// A length of four bytes and that many bytes of content.
+    Content,
+    /// A length of eight bytes and that many bytes of content.
+    LongContent,
+}
+
+use Part::{Content, Entries, Fixed, LongContent, Text, Texts};
+
+fn layout(opcode: u8) -> &'static [Part] {
+    match opcode {
+        op::HEADER => &[Text, Text],
+        op::FOOTER => &[Fixed(20)],
+        op::SCHEMA => &[Fixed(2), Text, Text, Content],
+        op::CHANNEL => &[Fixed(4), Text, Text, Texts],
+        op::MESSAGE => &[Fixed(22)],
+        op::CHUNK => &[Fixed(28), Text, LongContent],
+        op::MESSAGE_INDEX => &[Fixed(2), Entries],
+        op::CHUNK_INDEX => &[Fixed(32), Entries, Fixed(8), Text, Fixed(16)],
+        op::ATTACHMENT => &[Fixed(16), Text, Text, LongContent, Fixed(4)],
+        op::ATTACHMENT_INDEX => &[Fixed(40), Text, Text],
+        op::STATISTICS => &[Fixed(42), Entries],
+        op::METADATA => &[Text, Texts],
+        op::METADATA_INDEX => &[Fixed(16), Text],
+        op::SUMMARY_OFFSET => &[Fixed(17)],
+        op::DATA_END => &[Fixed(4)],
+        _ => &[],
+    }
+}
+
+/// True if all stated parts of the record lie within its body. More bytes may follow: the format lets later
+/// versions append parts.
+pub(super) fn fit(opcode: u8, body: &[u8]) -> bool {
+    let mut rest = body;
+    layout(opcode).iter().all(|part| take(&mut rest, part).is_some())
+}
+
+/// Splits the body of a record at its map of texts: the bytes before the map, the bytes of its pairs, and the bytes after it.
+pub(super) fn texts(opcode: u8, body: &[u8]) -> Option<[&[u8]; 3]> {
+    let mut rest = body;
+    for part in layout(opcode) {
+        if matches!(part, Texts) {
+            let before = &body[..body.len() - rest.len()];
+            return Some([before, short(&mut rest)?, rest]);
+        }
+        take(&mut rest, part)?;
+    }
+    None
+}
+
+fn take(rest: &mut &[u8], part: &Part) -> Option<()> {
+    match part {
+        Fixed(bytes) => *rest = rest.get(*bytes..)?,
+        Text | Entries | Content => {
+            short(rest)?;
+        }
+        LongContent => {
+            let (length, behind) = rest.split_first_chunk::<8>()?;
+            *rest = behind.get(usize::try_from(u64::from_le_bytes(*length)).ok()?..)?;
+        }
+        Texts => {
+            let mut pairs = short(rest)?;
+            while !pairs.is_empty() {
+                short(&mut pairs)?;
+                short(&mut pairs)?;
+            }
+        }
+    }
+    Some(())
+}
+
+/// The bytes covered by a length of four bytes.
+pub(super) fn short<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
+    let (length, behind) = rest.split_first_chunk::<4>()?;
+    let (inside, behind) = behind.split_at_checked(u32::from_le_bytes(*length) as usize)?;
+    *rest = behind;
+    Some(inside)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text(t: &str) -> Vec<u8> {
+        [&(t.len() as u32).to_le_bytes()[..], t.as_bytes()].concat()
+    }
+
+    #[test]
+    fn a_length_that_is_one_too_long_anywhere_in_a_metadata_record_is_noticed() {
+        let pairs = [text("seed"), text("7")].concat();
+        let body = [text("grainlab"), (pairs.len() as u32).to_le_bytes().to_vec(), pairs].concat();
+        assert!(fit(op::METADATA, &body));
+        for at in [0, 12, 16, 24] {
+            for claim in [1, 1 << 30] {
+                let mut wrong = body.clone();
+                let length = u32::from_le_bytes(wrong[at..at + 4].try_into().unwrap()) + claim;
+                wrong[at..at + 4].copy_from_slice(&length.to_le_bytes());
+                assert!(!fit(op::METADATA, &wrong) || claim == 1 && at == 0, "{at} {claim}");
+            }
+        }
+    }
+
+    #[test]
+    fn records_of_later_versions_may_be_longer_and_none_may_be_shorter() {
+        assert!(fit(op::DATA_END, &[0; 4]) && fit(op::DATA_END, &[0; 9]) && !fit(op::DATA_END, &[0; 3]));
+        assert!(fit(0x80, &[]), "a record that the format does not know is not looked into");
+    }
+}
