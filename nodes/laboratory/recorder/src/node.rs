@@ -38,6 +38,9 @@ fn backlog(topic: &Topic) -> u32 {
 /// by its publisher faster than to a file.
 const BURST: u32 = 8192;
 
+/// The same for a topic outside the contract, whose publisher may be a player that waits for nothing but acknowledgements.
+const FOREIGN_BURST: u32 = 32_768;
+
 /// Period of the writer's `tick`.
 const TICK: Duration = Duration::from_millis(100);
 
@@ -177,7 +180,7 @@ impl Recorder {
         let (Some(finder), Some(writer)) = (&mut self.finder, &mut self.writer) else { return Ok(()) };
         for FoundTopic { topic, spec } in finder.look(bus, &self.names) {
             let Qos { reliable, depth, .. } = topic.qos;
-            let demand = Demand { reliable, ..Demand::best_effort(depth).with_burst(BURST) };
+            let demand = Demand { reliable, ..Demand::best_effort(depth).with_burst(FOREIGN_BURST) };
             let source = Source::open(bus, &topic, demand)?;
             writer.add_topic(&spec).map_err(|e| lost(&e))?;
             writer.ledger_mut().count_from_first(&spec.name);

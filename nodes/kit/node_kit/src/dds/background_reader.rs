@@ -1,10 +1,9 @@
 //! Empties the readers while the node computes.
 //!
-//! When a writer leaves, RustDDS drops the samples of a reliable reader that were received but not yet taken
-//! (it removes the record of which samples are complete). A node that computes for seconds would lose the
-//! last packing of a simulator that ended meanwhile. The background reader moves samples into the queues of
-//! this process as soon as the node has not used the bus for a while, and follows the graph; it does nothing for a node with
-//! short steps.
+//! RustDDS acknowledges a sample as soon as its cache holds it, and the cache is bounded: a node that computes for
+//! seconds would lose what it has acknowledged. The background reader moves samples into the queues of this process
+//! as soon as the node has not used the bus for a while, and follows the graph. It does nothing for a node with short
+//! steps.
 
 use super::graph::Follower;
 use super::inbox::Inbox;

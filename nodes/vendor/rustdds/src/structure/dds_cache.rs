@@ -1,6 +1,6 @@
 use std::{
   cmp::max,
-  collections::{btree_map, BTreeMap, HashMap},
+  collections::{btree_map, BTreeMap, BTreeSet, HashMap},
   iter,
   ops::Bound::{Excluded, Included, Unbounded},
   sync::{Arc, Mutex},
@@ -161,6 +161,10 @@ pub(crate) struct TopicCache {
   // Therefore, data before the marker SN can be handed off to a Reliable DataReader.
   // Initially, we consider the marker for each Writer (GUID) to be SequenceNumber::new(1)
   received_reliably_before: BTreeMap<GUID, SequenceNumber>,
+
+  // Writers that are gone, and whose samples are still in the cache. What was received
+  // reliably from them can be taken; what was withheld is not awaited any more.
+  departed_writers: BTreeSet<GUID>,
 }
 
 impl TopicCache {
@@ -179,6 +183,7 @@ impl TopicCache {
       add_count: 0,
       sequence_numbers: BTreeMap::new(),
       received_reliably_before: BTreeMap::new(),
+      departed_writers: BTreeSet::new(),
     };
 
     new_self.update_keep_limits(topic_qos);
@@ -224,6 +229,7 @@ impl TopicCache {
   // forward and false if not. The marker never moves backwards: the cache may
   // have given up on a missing sample that the Reader is still waiting for.
   pub fn mark_reliably_received_before(&mut self, writer: GUID, sn: SequenceNumber) -> bool {
+    self.departed_writers.remove(&writer);
     let prev_sn = self.reliable_before(writer);
     // The entry must exist even at the initial value: withheld samples are
     // protected only for Writers that have one.
@@ -250,9 +256,15 @@ impl TopicCache {
     }
   }
 
-  // The Writer is gone, so samples it never completed are no longer awaited.
+  // The Writer is gone, so samples it never completed are no longer awaited. The
+  // marker stays as long as the cache has samples of it: a DataReader that is slow
+  // still takes those that were received, and acknowledged, before the Writer left.
   pub fn forget_reliable_writer(&mut self, writer: GUID) {
-    self.received_reliably_before.remove(&writer);
+    if self.sequence_numbers.contains_key(&writer) {
+      self.departed_writers.insert(writer);
+    } else {
+      self.received_reliably_before.remove(&writer);
+    }
   }
 
   // The oldest change that a Reliable DataReader cannot yet take, because an
@@ -262,6 +274,7 @@ impl TopicCache {
     self
       .received_reliably_before
       .iter()
+      .filter(|(writer, _)| !self.departed_writers.contains(writer))
       .filter_map(|(writer, marker)| {
         self
           .sequence_numbers
@@ -474,6 +487,9 @@ impl TopicCache {
     });
     if emptied {
       self.sequence_numbers.remove(&cc.writer_guid);
+      if self.departed_writers.remove(&cc.writer_guid) {
+        self.received_reliably_before.remove(&cc.writer_guid);
+      }
     }
   }
 
@@ -819,6 +835,30 @@ mod tests {
     assert!(topic_cache.mark_reliably_received_before(writer, SequenceNumber::new(10)));
     assert!(!topic_cache.mark_reliably_received_before(writer, SequenceNumber::new(5)));
     assert_eq!(topic_cache.reliable_before(writer), SequenceNumber::new(10));
+  }
+
+  #[test]
+  fn what_a_writer_completed_before_it_left_can_be_taken_and_nothing_else_is_kept_for_it() {
+    let mut topic_cache = keep_all_topic_cache();
+    let writer = user_writer();
+    let taken = |topic_cache: &TopicCache, read: i64| {
+      let last_read = BTreeMap::from([(writer, SequenceNumber::new(read))]);
+      topic_cache
+        .get_changes_in_range_reliable(&last_read)
+        .map(|(_, cc)| cc.sequence_number)
+        .collect::<Vec<_>>()
+    };
+    for sn in [1, 2, 3, 5] {
+      add_after_missing_first(&mut topic_cache, writer, sn, 100);
+    }
+    topic_cache.forget_reliable_writer(writer);
+    assert_eq!(taken(&topic_cache, 1), [2, 3].map(SequenceNumber::new));
+    assert_eq!(topic_cache.oldest_withheld_change(), None);
+
+    topic_cache.min_keep_samples = History::KeepLast { depth: 0 };
+    topic_cache.remove_changes_before(Timestamp::INFINITE);
+    assert!(topic_cache.changes.is_empty() && topic_cache.departed_writers.is_empty());
+    assert!(topic_cache.received_reliably_before.is_empty());
   }
 
   // E.g. Fast DDS sends its first HEARTBEAT 3 s after matching, so a late joiner
