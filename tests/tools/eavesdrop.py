@@ -7,7 +7,9 @@ import socket
 import sys
 
 WIREGUARD = 51820
-UDP, ICMPV6, HOP_BY_HOP = 17, 58, 0
+UDP = 17
+# IGMP, which the bridge itself sends, too; ICMPv6 and hop-by-hop options.
+KERNEL = {(4, 2), (6, 58), (6, 0)}
 
 
 def kind(frame):
@@ -37,7 +39,7 @@ def main():
         frame = listener.recv(65536)
         heard["clear"] += b"RTPS" in frame
         found = kind(frame)
-        if found is None or (found[0] == 6 and found[1] in (ICMPV6, HOP_BY_HOP)):
+        if found is None or found[:2] in KERNEL:
             continue
         if found[1] == UDP and WIREGUARD in found[2:]:
             heard["wireguard"] += 1
