@@ -7,13 +7,14 @@ use grainlab_msgs::msg::{Estimate, Microstructure, WaveSpeeds};
 use grainlab_msgs::{TypeInfo, topics};
 use grainlab_node_kit::{Bus, DdsBus, Names, Network};
 use grainlab_recordings::{Recording, Selection};
+use grainlab_testkit::nightly;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 use system_tests::bodies::decoded;
-use system_tests::lab::{Lab, golden, grainlab, scene_path, summary};
+use system_tests::lab::{Lab, example, golden, grainlab, scene_path, summary};
 use system_tests::process::Process;
 use system_tests::python;
 use system_tests::wait::{LIMIT, until};
@@ -295,21 +296,28 @@ fn an_instrument_and_a_servo_in_python_pass_the_tests_that_are_written_with_them
     assert!(run_in(&lab, ".", &python, &["-c", import]).starts_with("[0, 0, 0, 0, 0, 0]"));
 }
 
+/// A build of the new crate with the features that it alone needs takes minutes of processor time: nightly.
 #[test]
 fn a_node_in_rust_is_a_crate_of_its_own_that_builds_and_receives_its_answer() {
     let lab = Lab::new();
     new(&lab, &["my_node", "--rust"]);
-    // The versions, the profile and so the built libraries of this workspace: a new build of all takes minutes.
-    let top = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let (folder, read) =
-        (lab.folder().join("my_node"), |path: PathBuf| std::fs::read_to_string(path).unwrap());
-    std::fs::copy(top.join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
-    let workspace = read(top.join("Cargo.toml"));
-    let profile = workspace.find("[profile.release]").map(|at| &workspace[at..]).unwrap();
-    let profile: Vec<&str> = profile.lines().filter(|line| !line.starts_with("grainlab_")).collect();
-    let manifest = read(folder.join("Cargo.toml")) + &profile.join("\n");
-    std::fs::write(folder.join("Cargo.toml"), manifest).unwrap();
+    let folder = lab.folder().join("my_node");
+    let lock = Path::new(env!("CARGO_MANIFEST_DIR")).join("../Cargo.lock");
+    std::fs::copy(lock, folder.join("Cargo.lock")).unwrap();
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let out = run_in(&lab, "my_node", Path::new(&cargo), &["test", "--release", "--offline"]);
-    assert!(out.contains("the_inversion_answers ... ok"), "{out}");
+    let cargo = |arguments: &[&str]| run_in(&lab, "my_node", Path::new(&cargo), arguments);
+    if nightly(false, true) {
+        let out = cargo(&["test", "--release", "--offline"]);
+        assert!(out.contains("the_inversion_answers ... ok"), "{out}");
+        return;
+    }
+    assert!(cargo(&["metadata", "--offline", "--format-version", "1"]).contains("\"name\":\"my_node\""));
+    // The program of the crate is that of the example but for the name.
+    let file = folder.join("my_node.launch.yaml");
+    let launch = std::fs::read_to_string(&file).unwrap();
+    let run = "cargo run --quiet --release --manifest-path $(dirname)/Cargo.toml";
+    assert_eq!(launch.matches(run).count(), 1, "{launch}");
+    std::fs::write(&file, launch.replace(run, example("instrument").to_str().unwrap())).unwrap();
+    let out = lab.run(&["launch", "my_node/my_node.launch.yaml"]).assert_code(0).stdout;
+    assert!(out.contains("relaxed"), "{out}");
 }
