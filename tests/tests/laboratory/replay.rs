@@ -238,6 +238,27 @@ fn a_playback_to_a_subscriber_that_was_stopped_ends_with_the_number_of_messages_
     played.assert_code(3).assert_says(&["40 messages sent", " of 40 messages not acknowledged"]);
 }
 
+/// The player discovers the subscriber, which is stopped before it discovers the player.
+#[test]
+fn a_playback_to_a_subscriber_that_was_stopped_before_the_first_message_ends_with_the_number_of_all_messages()
+{
+    let Some(python) = python::with("cyclonedds") else { return };
+    let lab = Lab::new();
+    make(&lab, numbers(40), 1_000);
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tools/foreign_peer.py");
+    let mut command = Command::new(python);
+    command.arg(script).args(["count", CHAT, "40"]);
+    command.env("ROS_DOMAIN_ID", lab.domain.to_string()).env_remove("CYCLONEDDS_URI");
+    let peer = Process::start(&mut command);
+    until("its topic is discovered", || lab.run(&["topic", "list"]).stdout.contains(CHAT));
+    let player = lab.start(&["bag", "play", "burst", "--rate", "inf"]);
+    std::thread::sleep(Duration::from_millis(400));
+    peer.signal(libc::SIGSTOP);
+    let played = player.ended(LIMIT);
+    peer.signal(libc::SIGCONT);
+    played.assert_code(3).assert_says(&["40 messages sent", "/chat: 40 of 40 messages not acknowledged"]);
+}
+
 #[test]
 fn what_a_terminal_obeys_in_a_message_is_shown_by_cat_and_kept_in_a_file() {
     let lab = Lab::new();
