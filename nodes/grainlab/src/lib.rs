@@ -46,7 +46,7 @@ pub use error::Error;
 pub use grainlab_core::contact::ContactLaw;
 pub use grainlab_core::results::{InferredQuantity, Microstructure, PackingReport};
 pub use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Stiffness, Vec3};
-pub use grainlab_emt::{Conditions, Estimate, Measured, Moduli, Observation, Status};
+pub use grainlab_emt::{Conditions, Estimate, Measured, Moduli, Observation, Status, StrainRatio};
 pub use grainlab_recordings::import::ImportOptions;
 pub use measure::{Measurement, measure};
 pub use recording::{Loaded, Recording, load, open};

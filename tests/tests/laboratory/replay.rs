@@ -5,13 +5,14 @@ use grainlab_msgs::msg::PackingReport;
 use grainlab_msgs::{Guid, Qos, Topic, to_cdr, topics};
 use grainlab_recordings::{Incoming, Recording, RunWriter, Selection, TopicSpec, WriterOptions};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::time::Duration;
 use system_tests::bodies::{decoded, distinct, recorded};
 use system_tests::lab::{Lab, summary, undisturbed};
 use system_tests::lattice::lattice;
 use system_tests::process::Process;
 use system_tests::python;
+use system_tests::terminal::Terminal;
 use system_tests::wait::{LIMIT, until};
 
 /// A recorder of all topics into a folder.
@@ -235,6 +236,44 @@ fn a_playback_to_a_subscriber_that_was_stopped_ends_with_the_number_of_messages_
     let played = player.ended(LIMIT);
     recorder.signal(libc::SIGCONT);
     played.assert_code(3).assert_says(&["40 messages sent", " of 40 messages not acknowledged"]);
+}
+
+/// The player discovers the subscriber, which is stopped before it discovers the player.
+#[test]
+fn a_playback_to_a_subscriber_that_was_stopped_before_the_first_message_ends_with_the_number_of_all_messages()
+{
+    let Some(python) = python::with("cyclonedds") else { return };
+    let lab = Lab::new();
+    make(&lab, numbers(40), 1_000);
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tools/foreign_peer.py");
+    let mut command = Command::new(python);
+    command.arg(script).args(["count", CHAT, "40"]);
+    command.env("ROS_DOMAIN_ID", lab.domain.to_string()).env_remove("CYCLONEDDS_URI");
+    let peer = Process::start(&mut command);
+    until("its topic is discovered", || lab.run(&["topic", "list"]).stdout.contains(CHAT));
+    let player = lab.start(&["bag", "play", "burst", "--rate", "inf"]);
+    std::thread::sleep(Duration::from_millis(400));
+    peer.signal(libc::SIGSTOP);
+    let played = player.ended(LIMIT);
+    peer.signal(libc::SIGCONT);
+    played.assert_code(3).assert_says(&["40 messages sent", "/chat: 40 of 40 messages not acknowledged"]);
+}
+
+#[test]
+fn what_a_terminal_obeys_in_a_message_is_shown_by_cat_and_kept_in_a_file() {
+    let lab = Lab::new();
+    make(&lab, ["a\u{1b}[31m\u{9b}31m\u{202e}b"], 1);
+    for format in ["json", "text"] {
+        let words = ["bag", "cat", "burst", "--format", format];
+        assert!(lab.run(&words).stdout.contains("\u{9b}31m\u{202e}b"));
+        let (terminal, stdout) = Terminal::open(200);
+        let mut command = lab.command(&words);
+        assert!(command.stdout(stdout).stderr(Stdio::null()).status().unwrap().success());
+        drop(command);
+        let shown = terminal.shown().lines.join("\n");
+        assert!(shown.contains(r"\u{9b}31m\u{202e}b"), "{shown:?}");
+        assert!(!shown.contains(['\u{1b}', '\u{9b}', '\u{202e}']), "{shown:?}");
+    }
 }
 
 /// Ends a recorder, which has to say that messages are lost, and returns what it printed.

@@ -15,6 +15,7 @@ use crate::update::{Updated, updated};
 use crate::warning::Warning;
 use grainlab_core::results::{INFERENCE_INPUTS, InferredQuantity, Microstructure, MicrostructureCovariance};
 use nalgebra::{SMatrix, SVector};
+use std::fmt;
 
 /// Level of the intervals of an [`Estimate`].
 pub const CREDIBLE_LEVEL: f64 = 0.95;
@@ -67,6 +68,12 @@ impl Status {
         } else {
             Status::Ok
         }
+    }
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
     }
 }
 

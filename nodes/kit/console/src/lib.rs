@@ -34,8 +34,8 @@ pub use duration::duration;
 pub use escape::{escape_controls, escape_name};
 pub use failure::{Failure, worse};
 pub use output::{
-    CsvText, Format, Table, decimals_of, exact, fixed, json, json_element, print, print_more, say_line,
-    three_digits,
+    CsvText, Format, Output, Table, decimals_of, exact, fixed, json, json_element, print, print_more,
+    say_line, three_digits,
 };
 pub use pace::Pace;
 pub use program::{called, program, set_program};

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use clap::ValueEnum;
 use serde::Serialize;
 use std::fmt::Write as _;
-use std::io::{ErrorKind, IsTerminal, Write as _};
+use std::io::{BufWriter, ErrorKind, IsTerminal, StdoutLock, Write as _};
 
 /// The output format of a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -58,9 +58,45 @@ pub fn print(text: &str) -> Result<(), Failure> {
 
 /// Prints like [`print()`], for a command without an end; false once the reader of standard output has closed it.
 pub fn print_more(text: &str) -> Result<bool, Failure> {
-    let mut out = std::io::stdout().lock();
-    let text = if out.is_terminal() { escape_controls(text) } else { text.into() };
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    let mut out = Output::open();
+    Ok(out.print(text)? && out.flush()?)
+}
+
+/// Standard output for many texts: buffered, and escaped as [`print()`] escapes it.
+#[derive(Debug)]
+pub struct Output {
+    out: BufWriter<StdoutLock<'static>>,
+    is_terminal: bool,
+}
+
+impl Output {
+    /// Locks standard output.
+    pub fn open() -> Self {
+        let out = std::io::stdout().lock();
+        Self { is_terminal: out.is_terminal(), out: BufWriter::with_capacity(1 << 16, out) }
+    }
+
+    /// Prints `text`; false once the reader of standard output has closed it.
+    ///
+    /// # Errors
+    /// If standard output cannot be written.
+    pub fn print(&mut self, text: &str) -> Result<bool, Failure> {
+        let text = if self.is_terminal { escape_controls(text) } else { text.into() };
+        is_open(self.out.write_all(text.as_bytes()))
+    }
+
+    /// Writes what is buffered; false once the reader of standard output has closed it.
+    ///
+    /// # Errors
+    /// If standard output cannot be written.
+    pub fn flush(&mut self) -> Result<bool, Failure> {
+        is_open(self.out.flush())
+    }
+}
+
+/// Returns false for a closed pipe (`| head`), which is not an error.
+fn is_open(written: std::io::Result<()>) -> Result<bool, Failure> {
+    match written {
         Ok(()) => Ok(true),
         Err(e) if e.kind() == ErrorKind::BrokenPipe => Ok(false),
         Err(e) => Err(Failure::failed(format!("stdout: {e}"))),

@@ -35,7 +35,7 @@ pub fn read(name_or_path: &str, sets: &[String], seed: Option<u64>) -> Result<Sc
         Exit::Usage => f,
         exit => Failure::new(exit, format!("scene {name_or_path}: {f}")),
     })?;
-    let name = if name_or_path.contains('\n') { "scene" } else { name_or_path };
+    let name = if is_text(name_or_path) { "scene" } else { name_or_path };
     let with = |sets: &[String]| match sets {
         [] => name.to_owned(),
         sets => format!("{name} with {}", sets.join(" ")),
@@ -70,9 +70,14 @@ pub fn read(name_or_path: &str, sets: &[String], seed: Option<u64>) -> Result<Sc
     })
 }
 
+/// Returns true for the text of a scene: several lines that are not the path of a file.
+fn is_text(scene: &str) -> bool {
+    scene.contains('\n') && !scene.ends_with(".toml") && !Path::new(scene).exists()
+}
+
 /// A built-in scene or a file; one named in the file `from` is searched for beside it.
 fn find(name: &str, from: Option<&Path>) -> Result<Source, Failure> {
-    if name.contains('\n') {
+    if is_text(name) {
         return Ok(Source { name: "scene".to_owned(), text: name.to_owned() });
     }
     if let Some(text) = built_in(name) {
@@ -108,6 +113,20 @@ mod tests {
         let failure = load("dmeo", &[], None).unwrap_err();
         assert!(failure.exit == Exit::Usage && failure.to_string().contains("demo, s1"), "{failure}");
         assert_eq!(load("no/such.toml", &[], None).unwrap_err().exit, Exit::Failure);
+    }
+
+    #[test]
+    fn a_path_may_contain_a_newline_and_is_named_if_no_file_has_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let text = "base = 's2'\nname = 'mine'\ngrains.count = 600\n";
+        for name in ["ti\nny.toml", "ti\nny"] {
+            let path = folder.path().join(name);
+            std::fs::write(&path, text).unwrap();
+            assert_eq!(load(&path.to_string_lossy(), &[], None).unwrap().scene.grains, 600);
+        }
+        let failure = load("no\nsuch.toml", &[], None).unwrap_err().to_string();
+        assert!(failure.starts_with(r#"no scene "no\nsuch.toml""#), "{failure}");
+        assert_eq!(load(text, &[], None).unwrap().scene.grains, 600);
     }
 
     #[test]

@@ -200,7 +200,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if publishers.is_empty() {
         return Err(Failure::failed("nothing is left to play"));
     }
-    if !wait_for_readers(&mut bus, &publishers, args.min_subscribers, patience) {
+    if !wait_for_readers(&mut bus, &mut publishers, args.min_subscribers, patience) {
         return Ok(Exit::Interrupted);
     }
     let keys = Keys::open(args.start_paused || args.step);
@@ -245,7 +245,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if !finished {
         return Ok(Exit::Interrupted);
     }
-    grainlab_console::say!("grainlab: {} sent", grainlab_console::count(sent, "message"));
+    let was_read = publishers.values().any(|publisher| publisher.watch().was_read());
+    let to = if was_read { "" } else { ", without a subscriber" };
+    grainlab_console::say!("grainlab: {} sent{to}", grainlab_console::count(sent, "message"));
     if unread > 0 {
         grainlab_console::say!(
             "grainlab: {} left out: their definition differs from that of this program",

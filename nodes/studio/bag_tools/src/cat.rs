@@ -5,12 +5,12 @@ use crate::opened::losses;
 use crate::selection::Excerpt;
 use clap::ValueEnum;
 use grainlab_any_message::Shown;
-use grainlab_console::{Failure, worse};
+use grainlab_console::{Failure, Output, worse};
 use grainlab_msgs::Exit;
 use grainlab_recordings::{Message, MessagePath};
 use serde::Serialize;
 use std::fmt::Display;
-use std::io::{self, BufWriter, ErrorKind, Write};
+use std::io::{self, Write};
 use std::path::PathBuf;
 use std::slice::from_ref;
 
@@ -64,17 +64,18 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let (selection, wanted) = args.excerpt.select(&recording)?;
     let messages = recording.messages(&selection).map_err(Failure::failed)?;
     let mut decoders = Decoders::default();
-    let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
+    let (mut out, mut line) = (Output::open(), Vec::new());
     let mut printed = 0;
     for message in messages.filter(|m| wanted.as_ref().is_none_or(|w| w.take(&m.channel))) {
         if args.count.is_some_and(|most| printed >= most) {
             break;
         }
-        let written = if message.channel.message_encoding == "json" {
+        line.clear();
+        let formatted = if message.channel.message_encoding == "json" {
             let Some(data) = decoders.json(&message) else { continue };
             match args.format {
-                Format::Json => raw_json(&mut out, &message, &data),
-                Format::Text => text(&mut out, &message, data + "\n"),
+                Format::Json => raw_json(&mut line, &message, &data),
+                Format::Text => text(&mut line, &message, data + "\n"),
             }
         } else {
             let Some(decoded) = decoders.decode(&message) else { continue };
@@ -83,28 +84,20 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
                 shown = shown.shortened(longest);
             }
             match args.format {
-                Format::Json => json(&mut out, &message, shown),
-                Format::Text => text(&mut out, &message, shown.text()),
+                Format::Json => json(&mut line, &message, shown),
+                Format::Text => text(&mut line, &message, shown.text()),
             }
         };
-        if let Some(exit) = ended(written)? {
-            return Ok(exit);
+        formatted.map_err(Failure::failed)?;
+        if !out.print(&String::from_utf8_lossy(&line))? {
+            return Ok(Exit::Done);
         }
         printed += 1;
     }
-    if let Some(exit) = ended(out.flush())? {
-        return Ok(exit);
+    if !out.flush()? {
+        return Ok(Exit::Done);
     }
     Ok(worse(losses(from_ref(&recording)), decoders.losses()))
-}
-
-/// The exit if stdout is closed (`| head`), which is not an error.
-fn ended(written: io::Result<()>) -> Result<Option<Exit>, Failure> {
-    match written {
-        Ok(()) => Ok(None),
-        Err(e) if e.kind() == ErrorKind::BrokenPipe => Ok(Some(Exit::Done)),
-        Err(e) => Err(Failure::failed(format!("stdout: {e}"))),
-    }
 }
 
 #[derive(Serialize)]
@@ -133,12 +126,10 @@ pub(crate) fn json(out: &mut impl Write, message: &Message, data: impl Serialize
 }
 
 /// Writes a message whose data are JSON as they are.
-fn raw_json(out: &mut impl Write, message: &Message, data: &str) -> io::Result<()> {
-    let mut line = Vec::new();
-    json(&mut line, message, ())?;
-    let before = line.strip_suffix(b"null}\n").unwrap_or(&line);
-    out.write_all(before)?;
-    writeln!(out, "{data}}}")
+fn raw_json(line: &mut Vec<u8>, message: &Message, data: &str) -> io::Result<()> {
+    json(line, message, ())?;
+    line.truncate(line.len() - b"null}\n".len());
+    writeln!(line, "{data}}}")
 }
 
 fn text(out: &mut impl Write, message: &Message, data: impl Display) -> io::Result<()> {

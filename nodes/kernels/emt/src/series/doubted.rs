@@ -11,6 +11,10 @@ use serde::Serialize;
 /// Standard deviations of z by which rows that the others contradict may move it.
 const MOVED: f64 = 2.0;
 
+/// p below which a pressure or row is left out on trial: z may depend on speeds outside the central 95 % of their prediction, although
+/// they do not contradict the others by [`SeriesEstimate::CONTRADICTORY`].
+const OUTSIDE: f64 = 0.05;
+
 /// Rows that the others contradict, all of one pressure or a single one, and z without them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Doubted {
@@ -30,7 +34,8 @@ impl Doubted {
         self.moved.abs() > MOVED
     }
 
-    /// The rows of each pressure, and each row, that all others contradict; none that leave nothing that can be sampled.
+    /// The rows of each pressure, and each row, that all others contradict, or that are decisive and outside their prediction; none
+    /// that leave nothing that can be sampled.
     pub(super) fn of(
         estimate: &SeriesEstimate,
         series: &SpeedSeries,
@@ -38,25 +43,29 @@ impl Doubted {
         prior: &SeriesPrior,
     ) -> Vec<Self> {
         let pressures = series.pressures();
-        let is_doubted = |p: Option<f64>| p.is_some_and(|p| p < SeriesEstimate::CONTRADICTORY);
+        let is_outside = |p: &Option<f64>| p.is_some_and(|p| p < OUTSIDE);
         let is_at = |n: &usize, k: usize| {
             series.rows[*n].speed.is_some() && SpeedSeries::place(&pressures, &series.rows[*n]) == k
         };
         let all = 0..series.rows.len();
-        let of_pressures = (0..pressures.len()).filter(|k| is_doubted(estimate.pressures[*k].p));
-        let mut groups: Vec<Vec<usize>> =
-            of_pressures.map(|k| all.clone().filter(|n| is_at(n, k)).collect()).collect();
-        for n in all.filter(|n| is_doubted(estimate.rows[*n].p)) {
-            if !groups.contains(&vec![n]) {
-                groups.push(vec![n]);
+        let of_pressures = estimate.pressures.iter().enumerate().map(|(k, of)| {
+            let rows: Vec<usize> = all.clone().filter(|n| is_at(n, k)).collect();
+            (rows, of.p)
+        });
+        let mut groups: Vec<_> = of_pressures.filter(|(_, p)| is_outside(p)).collect();
+        for (n, of) in estimate.rows.iter().enumerate().filter(|(_, of)| is_outside(&of.p)) {
+            if !groups.iter().any(|(rows, _)| *rows == [n]) {
+                groups.push((vec![n], of.p));
             }
         }
-        let without = |rows: Vec<usize>| {
+        let without = |(rows, p): (Vec<usize>, Option<f64>)| {
             let z = z_without(&rows, series, network, prior)?;
             let moved =
                 z.iter().zip(&estimate.pressures).map(|([z, _], with)| (z - with.z.mean) / with.z.stddev);
             let (place, moved) = moved.enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-            Some(Self { rows, z, place, moved })
+            let doubted = Self { rows, z, place, moved };
+            let is_contradicted = p.is_some_and(|p| p < SeriesEstimate::CONTRADICTORY);
+            (is_contradicted || doubted.is_decisive()).then_some(doubted)
         };
         groups.into_iter().filter_map(without).collect()
     }

@@ -80,7 +80,7 @@ impl Sensitivity {
     }
 
     /// Returns z under other assumptions; `estimate` is the estimate of `series`. This takes four more inversions by their normal
-    /// approximations, and one for each pressure and row that the others contradict.
+    /// approximations, and one for each pressure and row outside the central 95 % of its prediction.
     ///
     /// # Errors
     /// As [`infer_series`](crate::infer_series).

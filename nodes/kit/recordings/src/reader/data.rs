@@ -10,7 +10,7 @@ use mcap::records::{Record, Statistics, op};
 use super::block::{Block, add_loose};
 use super::declarations::Declarations;
 use super::entry::StoredEntries;
-use super::records::Records;
+use super::records::{RawRecord, Records};
 
 /// Chunks by their offset: the first byte after each, and the first and last log time that is stated, ns since 1970.
 pub(super) type Chunks = BTreeMap<usize, (usize, u64, u64)>;
@@ -68,6 +68,34 @@ impl Indexed {
     }
 }
 
+/// Damaged records with the same fault and the same type. All records between the first and the last have this type, too: a hole of
+/// zeros in a file is one record after every nine bytes.
+pub(super) struct DamagedRun {
+    /// Byte of the first record.
+    pub(super) at: usize,
+    /// First byte after the last record of this type.
+    end: usize,
+    opcode: u8,
+    /// Number of records with the fault.
+    records: u64,
+    fault: String,
+}
+
+impl DamagedRun {
+    /// Describes the fault of the first record, and the other records of the run.
+    pub(super) fn detail(self) -> String {
+        match self.records - 1 {
+            0 => self.fault,
+            n => format!(
+                "{}; so {} up to byte {}",
+                self.fault,
+                if n == 1 { "is 1 more record".to_owned() } else { format!("are {n} more records") },
+                self.end
+            ),
+        }
+    }
+}
+
 /// Content of the data section.
 #[derive(Default)]
 pub(super) struct Data {
@@ -79,8 +107,8 @@ pub(super) struct Data {
     pub(super) stored: StoredEntries,
     /// Faults of declarations and metadata records: the byte of each, and what is wrong.
     pub(super) faults: Vec<(usize, String)>,
-    /// Damaged records, other than the chunks that the index knows: the byte of each, and what is wrong.
-    pub(super) damaged: Vec<(usize, String)>,
+    /// Damaged records, other than the chunks that the index knows.
+    pub(super) damaged: Vec<DamagedRun>,
     /// Messages by channel: those listed behind the chunks, and those outside chunks.
     pub(super) counts: BTreeMap<u16, u64>,
     /// True if messages are listed behind chunks.
@@ -112,6 +140,11 @@ impl Data {
                 // A damaged chunk states no times.
                 chunk = ANY;
             }
+            if let Some(run) =
+                data.damaged.last_mut().filter(|run| run.end == at && run.opcode == record.opcode)
+            {
+                run.end = record.end();
+            }
             match indexed.stated(at).filter(|stated| *stated != record.opcode) {
                 // It is found when the chunk is read.
                 Some(op::CHUNK) => {
@@ -119,8 +152,8 @@ impl Data {
                     continue;
                 }
                 Some(stated) => {
-                    let detail = format!("its type is 0x{:02x}, by the index 0x{stated:02x}", record.opcode);
-                    data.damaged.push((at, detail));
+                    let fault = format!("its type is 0x{:02x}, by the index 0x{stated:02x}", record.opcode);
+                    data.add_damaged(&record, fault);
                     continue;
                 }
                 None => {}
@@ -133,14 +166,14 @@ impl Data {
                         chunk = (at, header.message_start_time, header.message_end_time);
                         data.chunks.insert(at, (record.end(), chunk.1, chunk.2));
                     }
-                    Err(detail) if !indexed.chunks.contains_key(&at) => data.damaged.push((at, detail)),
+                    Err(fault) if !indexed.chunks.contains_key(&at) => data.add_damaged(&record, fault),
                     _ => {}
                 },
                 op::MESSAGE_INDEX => match record.fit() {
                     Ok(()) => data.list(record.body, at, chunk),
-                    Err(detail) => {
+                    Err(fault) => {
                         chunk = ANY;
-                        data.damaged.push((at, detail));
+                        data.add_damaged(&record, fault);
                     }
                 },
                 op::MESSAGE => match record.message() {
@@ -148,7 +181,7 @@ impl Data {
                         *data.counts.entry(header.channel_id).or_default() += 1;
                         add_loose(&mut data.loose, &record, &header);
                     }
-                    None => data.damaged.push((at, "its header is incomplete".to_owned())),
+                    None => data.add_damaged(&record, "its header is incomplete".to_owned()),
                 },
                 op::SCHEMA | op::CHANNEL => {
                     let added = record.parse().and_then(|parsed| declared.add(parsed));
@@ -163,6 +196,19 @@ impl Data {
         }
         data.broken = (!ended).then_some(bytes.len());
         data
+    }
+
+    /// Adds a damaged record to the last run if it continues the run.
+    fn add_damaged(&mut self, record: &RawRecord<'_>, fault: String) {
+        let (at, end, opcode) = (record.offset, record.end(), record.opcode);
+        match self
+            .damaged
+            .last_mut()
+            .filter(|run| run.end == end && run.opcode == opcode && run.fault == fault)
+        {
+            Some(run) => run.records += 1,
+            None => self.damaged.push(DamagedRun { at, end, opcode, records: 1, fault }),
+        }
     }
 
     /// The first contradiction between the data section, the chunks of an index, and its counts.

@@ -175,7 +175,7 @@ impl Index {
         index.stored = own;
         index.stored.unknown.extend(unknown.into_iter().chain(other.unknown));
         faults.extend(data.faults.into_iter().map(|(at, fault)| (at, WarningKind::Inconsistent, fault)));
-        faults.extend(data.damaged.into_iter().map(|(at, fault)| (at, WarningKind::DamagedRecord, fault)));
+        faults.extend(data.damaged.into_iter().map(|run| (run.at, WarningKind::DamagedRecord, run.detail())));
         faults.extend(data.after_end.map(|at| (at, WarningKind::Inconsistent, AFTER_END.to_owned())));
         warnings.extend(faults.into_iter().map(|(at, kind, detail)| Warning {
             path: path.to_owned(),

@@ -120,6 +120,27 @@ fn a_flipped_bit_in_the_type_of_a_record_costs_no_message_but_those_of_a_chunk()
 }
 
 #[test]
+fn a_hole_of_zeros_is_one_damaged_run_with_its_extent_and_the_number_of_its_records() {
+    let mut bytes = same_bytes(2000);
+    let (whole, _) = read(&bytes);
+    let hole = bytes.len() / 4..bytes.len() / 2;
+    bytes[hole.clone()].fill(0);
+    let (found, _) = read(&bytes);
+    let missing = whole.len() - found.len();
+    let head = found.iter().zip(&whole).take_while(|(a, b)| a == b).count();
+    assert!(missing > 100 && found[head..] == whole[head + missing..], "{missing} are missing");
+    let warnings = of_bytes(&bytes).warnings();
+    // The record in which the hole begins has lengths, which are wrong.
+    let damaged =
+        warnings.iter().filter(|w| w.kind == WarningKind::DamagedRecord && !w.detail.contains("lengths"));
+    let [run] = damaged.collect::<Vec<_>>()[..] else { panic!("{} messages", warnings.len()) };
+    let (others, end) =
+        run.detail.split_once("so are ").unwrap().1.split_once(" more records up to byte ").unwrap();
+    assert!(hole.contains(&(run.offset as usize)) && others.parse::<usize>().unwrap() > 10, "{run}");
+    assert!(end.parse::<usize>().unwrap().abs_diff(hole.end) <= 9, "{run}");
+}
+
+#[test]
 fn files_that_are_not_recordings_are_refused_with_a_reason() {
     let root = tempfile::tempdir().unwrap();
     let file = |name: &str, bytes: &[u8]| {

@@ -44,12 +44,10 @@ pub(super) fn report(publishers: &TopicPublishers) -> bool {
                 Delivery::PATIENCE.as_secs()
             );
         }
-        let abandoned = publisher.watch().abandoned();
-        if abandoned > 0 {
+        if let Some(abandoned) = publisher.watch().abandoned(publisher.sent()) {
             complete = false;
             say!(
-                "grainlab: {name}: {abandoned} of {sent} not acknowledged by a subscriber that was stopped, or ended without leaving; \
-                 the messages after them were sent without it"
+                "grainlab: {name}: {abandoned} of {sent} not acknowledged by a subscriber that was stopped, or ended without leaving"
             );
         }
         let left_behind = publisher.left_behind();

@@ -1,6 +1,6 @@
 //! The publishers of a playback.
 
-use super::watch::Watch;
+use super::watch::{Seen, Watch};
 use grainlab_console::{Failure, say};
 use grainlab_msgs::{Topic, topics};
 use grainlab_node_kit::{BulkPublisher, Bus, BusError, DdsBus, PublisherId, Wake};
@@ -42,7 +42,13 @@ impl TopicPublisher {
 
     /// Looks at the acknowledgements.
     pub(super) fn look(&mut self, bus: &DdsBus) {
-        self.watch.look(bus.now(), self.sent, bus.unacknowledged(self.id), bus.readers(self.id));
+        let seen = Seen {
+            sent: self.sent,
+            pending: bus.unacknowledged(self.id),
+            readers: bus.readers(self.id),
+            is_answered: bus.is_known_to_readers(self.id),
+        };
+        self.watch.look(bus.now(), seen);
     }
 
     /// The acknowledgements at the last look.
@@ -123,16 +129,17 @@ pub(super) fn pause(bus: &mut DdsBus, time: Duration) {
 /// signal.
 pub(super) fn wait_for_readers(
     bus: &mut DdsBus,
-    publishers: &TopicPublishers,
+    publishers: &mut TopicPublishers,
     needed: usize,
     patience: Duration,
 ) -> bool {
     let end = bus.now() + patience;
-    let count = |bus: &DdsBus| publishers.values().map(|p| bus.readers(p.id)).collect::<Vec<_>>();
-    let (mut known, mut since) = (count(bus), bus.now());
+    let (mut known, mut since) = (Vec::new(), bus.now());
     loop {
         let now = bus.now();
-        let counts = count(bus);
+        // A subscriber that does not answer is noticed although nothing is sent yet.
+        publishers.values_mut().for_each(|publisher| publisher.look(bus));
+        let counts: Vec<usize> = publishers.values().map(|p| bus.readers(p.id)).collect();
         if counts != known {
             (known, since) = (counts, now);
         }

@@ -10,43 +10,65 @@ const SILENT: Duration = Duration::from_secs(3);
 /// Time in which the removal of a subscriber reaches the graph.
 const REMOVAL: Duration = Duration::from_millis(200);
 
+/// The state of one topic on the bus at one time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    /// Number of messages sent.
+    pub(super) sent: u64,
+    /// Number of messages that some subscriber has not acknowledged.
+    pub(super) pending: u64,
+    /// Number of subscribers.
+    pub(super) readers: usize,
+    /// True if every reliable subscriber has answered the publisher at least once.
+    pub(super) is_answered: bool,
+}
+
 /// The acknowledgements of one topic.
 #[derive(Debug, Default)]
 pub(super) struct Watch {
     pending: u64,
     acknowledged: u64,
-    /// Time of the last acknowledgement, or at which the first message became pending.
+    /// True while a subscriber owes an answer: to a message, or to the publisher itself before the first message.
+    is_owed: bool,
+    /// Time of the last answer, or since which an answer is owed.
     progress: Duration,
     /// Largest number of subscribers since then.
     readers: usize,
+    /// True if there was a subscriber at any time.
+    was_read: bool,
     suspect: Option<Suspect>,
-    abandoned: u64,
+    last_of_removed: Option<u64>,
 }
 
-/// Messages that ceased to be pending after a silence: acknowledged at last, or their subscriber was removed.
+/// A silence that ended, because its subscriber answered at last or was removed.
 #[derive(Debug)]
 struct Suspect {
-    messages: u64,
+    /// Number of messages that were acknowledged before the silence.
+    acknowledged: u64,
     readers: usize,
     until: Duration,
 }
 
 impl Watch {
-    /// Looks at the topic: messages sent, messages that some subscriber has not acknowledged, number of subscribers.
-    pub(super) fn look(&mut self, now: Duration, sent: u64, pending: u64, readers: usize) {
+    /// Looks at the topic.
+    pub(super) fn look(&mut self, now: Duration, seen: Seen) {
+        let Seen { sent, pending, readers, is_answered } = seen;
         let acknowledged = sent.saturating_sub(pending);
+        let is_owed = pending > 0 || !is_answered;
         self.readers = self.readers.max(readers);
-        if pending == 0 || acknowledged > self.acknowledged || self.pending == 0 {
-            if self.pending > 0 && now.saturating_sub(self.progress) >= SILENT {
-                let messages = acknowledged.saturating_sub(self.acknowledged);
-                self.suspect = Some(Suspect { messages, readers: self.readers, until: now + REMOVAL });
+        self.was_read |= readers > 0;
+        if !is_owed || acknowledged > self.acknowledged || !self.is_owed {
+            if self.is_owed && now.saturating_sub(self.progress) >= SILENT {
+                let (acknowledged, readers) = (self.acknowledged, self.readers);
+                self.suspect = Some(Suspect { acknowledged, readers, until: now + REMOVAL });
             }
             (self.progress, self.readers) = (now, readers);
         }
-        (self.pending, self.acknowledged) = (pending, acknowledged);
+        (self.pending, self.acknowledged, self.is_owed) = (pending, acknowledged, is_owed);
         if let Some(suspect) = &self.suspect {
             if readers < suspect.readers {
-                self.abandoned += suspect.messages;
+                let first = self.last_of_removed.unwrap_or(u64::MAX);
+                self.last_of_removed = Some(first.min(suspect.acknowledged));
                 self.suspect = None;
             } else if now >= suspect.until {
                 self.suspect = None;
@@ -69,9 +91,15 @@ impl Watch {
         self.pending
     }
 
-    /// Number of messages that a subscriber had not acknowledged when it was removed without a word.
-    pub(super) fn abandoned(&self) -> u64 {
-        self.abandoned
+    /// Number of messages, of `sent`, that a subscriber did not acknowledge because it was removed without a word, at that time or
+    /// before; `None` if no subscriber was removed so.
+    pub(super) fn abandoned(&self, sent: u64) -> Option<u64> {
+        self.last_of_removed.map(|acknowledged| sent - acknowledged)
+    }
+
+    /// True if the topic had a subscriber at any time.
+    pub(super) fn was_read(&self) -> bool {
+        self.was_read
     }
 }
 
@@ -81,16 +109,20 @@ mod tests {
 
     const SECOND: Duration = Duration::from_secs(1);
 
+    fn seen(sent: u64, pending: u64, readers: usize) -> Seen {
+        Seen { sent, pending, readers, is_answered: true }
+    }
+
     #[test]
     fn a_topic_is_stuck_after_ten_seconds_without_an_acknowledgement() {
         let mut watch = Watch::default();
-        watch.look(5 * SECOND, 0, 0, 1);
-        watch.look(9 * SECOND, 100, 100, 1);
+        watch.look(5 * SECOND, seen(0, 0, 1));
+        watch.look(9 * SECOND, seen(100, 100, 1));
         assert!(!watch.is_stuck(18 * SECOND) && !watch.is_settled());
-        watch.look(18 * SECOND, 200, 199, 1);
+        watch.look(18 * SECOND, seen(200, 199, 1));
         assert!(!watch.is_stuck(27 * SECOND), "one was acknowledged");
         assert!(watch.is_stuck(28 * SECOND));
-        watch.look(29 * SECOND, 200, 0, 1);
+        watch.look(29 * SECOND, seen(200, 0, 1));
         assert!(!watch.is_stuck(99 * SECOND));
     }
 
@@ -98,20 +130,40 @@ mod tests {
     fn messages_of_a_subscriber_that_is_removed_after_a_silence_are_not_acknowledged() {
         let after = |silence: Duration, readers: [usize; 2]| {
             let mut watch = Watch::default();
-            watch.look(SECOND, 0, 0, 2);
-            watch.look(SECOND, 50, 50, 2);
+            watch.look(SECOND, seen(0, 0, 2));
+            watch.look(SECOND, seen(50, 40, 2));
             let end = SECOND + silence;
-            watch.look(end, 60, 60, 2);
-            // The other subscriber has acknowledged all but two. The graph may know of the removal a little later.
-            watch.look(end, 60, 2, readers[0]);
-            watch.look(end + REMOVAL / 2, 60, 0, readers[1]);
-            watch.look(end + 2 * REMOVAL, 60, 0, readers[1]);
+            watch.look(end, seen(60, 50, 2));
+            // The other subscriber has acknowledged all but two, this one ten. The graph may know of the removal a little later.
+            watch.look(end, seen(60, 2, readers[0]));
+            watch.look(end + REMOVAL / 2, seen(60, 0, readers[1]));
+            watch.look(end + 2 * REMOVAL, seen(60, 0, readers[1]));
             assert!(watch.is_settled());
-            watch.abandoned()
+            watch.abandoned(70)
         };
-        assert_eq!(after(9 * SECOND, [2, 1]), 58);
-        assert_eq!(after(9 * SECOND, [1, 1]), 58);
-        assert_eq!(after(9 * SECOND, [2, 2]), 0, "it was slow, and is there");
-        assert_eq!(after(SECOND, [2, 1]), 0, "it left");
+        assert_eq!(after(9 * SECOND, [2, 1]), Some(60));
+        assert_eq!(after(9 * SECOND, [1, 1]), Some(60));
+        assert_eq!(after(9 * SECOND, [2, 2]), None, "it was slow, and is there");
+        assert_eq!(after(SECOND, [2, 1]), None, "it left");
+    }
+
+    /// A subscriber that is matched and stopped at once: the publisher waits 10 s for its answer, and the subscriber is removed
+    /// before, or shortly after the first messages.
+    #[test]
+    fn messages_of_a_subscriber_that_never_answered_are_counted_however_late_they_are_sent() {
+        let removed = |sent_before: u64, is_removed: bool| {
+            let mut watch = Watch::default();
+            watch.look(SECOND, Seen { is_answered: false, ..seen(0, 0, 1) });
+            watch.look(10 * SECOND, Seen { is_answered: false, ..seen(0, 0, 1) });
+            watch.look(11 * SECOND, Seen { is_answered: false, ..seen(sent_before, sent_before, 1) });
+            let readers = usize::from(!is_removed);
+            watch.look(12 * SECOND, seen(sent_before, 0, readers));
+            watch.look(13 * SECOND, seen(100, 0, readers));
+            assert!(watch.is_settled() && watch.was_read());
+            watch.abandoned(100)
+        };
+        assert_eq!(removed(60, true), Some(100));
+        assert_eq!(removed(0, true), Some(100), "before the first message");
+        assert_eq!([removed(60, false), removed(0, false)], [None, None], "it answered at last");
     }
 }
