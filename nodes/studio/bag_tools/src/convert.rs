@@ -1,7 +1,6 @@
 //! `grainlab bag convert`: tables of a recording, or a recording made from others.
 
-use crate::decoders::Decoders;
-use crate::opened::losses;
+use crate::decoders::{Decoders, losses};
 use crate::progress::Progress;
 use crate::selection::Excerpt;
 use crate::tables::{TableFormat, Tables};

@@ -3,10 +3,20 @@
 use grainlab_any_message::{Message, Schema};
 use grainlab_console::{count, say};
 use grainlab_msgs::Exit;
-use grainlab_recordings::ChannelInfo;
+use grainlab_recordings::{ChannelInfo, Recording};
 use serde::de::IgnoredAny;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+
+/// Prints what could not be read; exit 3 if there is anything.
+pub(crate) fn losses(recordings: &[Recording]) -> Exit {
+    let mut exit = Exit::Done;
+    for warning in recordings.iter().flat_map(Recording::warnings) {
+        say!("grainlab: {warning}");
+        exit = Exit::DataLoss;
+    }
+    exit
+}
 
 /// The schemas of the channels, and what could not be decoded.
 #[derive(Default)]
@@ -104,7 +114,7 @@ impl Decoders {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainlab_recordings::{Recording, Selection};
+    use grainlab_recordings::Selection;
     use mcap::records::MessageHeader;
 
     #[test]

@@ -1,6 +1,6 @@
 //! `grainlab bag diff`.
 
-use crate::opened::losses;
+use crate::decoders::losses;
 use crate::selection::Topics;
 use grainlab_console::{Failure, Format, Table, worse};
 use grainlab_msgs::Exit;

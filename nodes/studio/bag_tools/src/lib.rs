@@ -7,12 +7,12 @@
 mod appended;
 mod cat;
 mod convert;
+mod csv_table;
 mod decoders;
 mod diff;
-mod opened;
 mod progress;
 mod selection;
-mod table;
+mod shape;
 mod tables;
 mod times;
 

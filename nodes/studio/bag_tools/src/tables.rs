@@ -2,10 +2,11 @@
 
 use crate::appended::Appended;
 use crate::cat;
+use crate::csv_table::{Columns, CsvTable};
 use crate::decoders::{Decoders, schema_of};
 use crate::progress::Progress;
 use crate::selection::Topics;
-use crate::table::{Columns, CsvTable, MOST_COLUMNS, Shape};
+use crate::shape::{MOST_COLUMNS, Shape};
 use grainlab_any_message::{Message as Decoded, Schema, Shown};
 use grainlab_console::{Failure, count};
 use grainlab_recordings::{ChannelInfo, Message, Recording, Selection};
