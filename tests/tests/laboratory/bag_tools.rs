@@ -283,4 +283,5 @@ fn a_difference_of_recordings_is_named_by_topic_message_and_field_and_none_is_ex
         lab.run(&[&["bag", "convert", source], arguments].concat()).assert_code(2).assert_says(&[words]);
     };
     refused(&["--start-offset", "500", "-o", "late.mcap"], "the recording has");
+    refused(&[to, "-o", "both.csv"], "both.csv: this would be a recording, and has the name of a table");
 }

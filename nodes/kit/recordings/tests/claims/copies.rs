@@ -175,6 +175,11 @@ fn other_fields_and_comments(hash: &str) {
     let to = root.path().join("never");
     let error = copy(&recordings, &to, &CopyOptions::default()).unwrap_err();
     assert!(error.to_string().starts_with("/a is p/msg/A"), "{error}");
+    let recordings = [with("e", "int8 x"), with("f", "")];
+    let error = copy(&recordings, &to, &CopyOptions::default()).unwrap_err();
+    let path = recordings[1].path().display();
+    let expected = format!("/a in {path}: the recording has no definition of p/msg/A: give a folder");
+    assert!(error.to_string().starts_with(&expected) && error.to_string().contains("--msg-path"), "{error}");
     assert!(!to.exists());
 }
 
