@@ -14,6 +14,8 @@ mod progress;
 mod selection;
 mod shape;
 mod tables;
+#[cfg(test)]
+mod testing;
 mod times;
 
 use clap::Subcommand;
