@@ -108,18 +108,8 @@ fn steps_are_played_one_by_one_and_a_recorder_takes_the_topics_it_is_told_to() {
     let lab = Lab::new();
     let source = lab.launch(&golden("scenes/tiny.toml"), &[]);
     let source = source.to_str().unwrap();
-    let recorder = lab.start(&[
-        "bag",
-        "record",
-        "--regex",
-        "/(stress|packing|packing_report)",
-        "--exclude-topics",
-        "packing",
-        "--compression",
-        "lz4",
-        "-o",
-        "again",
-    ]);
+    let record = "bag record --regex /(stress|packing|packing_report) --exclude-topics packing --compression lz4 -o again";
+    let recorder = lab.start(&record.split(' ').collect::<Vec<_>>());
     // Five steps, and the end of stdin.
     let lines = lab.folder().join("lines");
     std::fs::write(&lines, "\n\ns\n\n\n").unwrap();
