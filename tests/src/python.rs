@@ -42,6 +42,25 @@ pub fn say_skipped(reason: &str) {
     let _ = writeln!(std::io::stderr(), "SKIPPED: {reason}");
 }
 
+/// Runs a script of `tests/tools`, which has to succeed; what it prints.
+#[track_caller]
+pub fn succeeds(python: &Path, script: &str, arguments: &[&str]) -> String {
+    printed(tool(python, script, arguments))
+}
+
+/// Runs Python code in a folder, which has to succeed; what it prints.
+#[track_caller]
+pub fn code(python: &Path, code: &str, arguments: &[&str], folder: &Path) -> String {
+    printed(Command::new(python).args(["-c", code]).args(arguments).current_dir(folder).output().unwrap())
+}
+
+#[track_caller]
+fn printed(output: Output) -> String {
+    let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+    assert!(output.status.success(), "{out}{err}");
+    out
+}
+
 /// Runs a script of `tests/tools`.
 pub fn tool(python: &Path, script: &str, arguments: &[&str]) -> Output {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tools").join(script);

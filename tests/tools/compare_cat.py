@@ -1,7 +1,7 @@
 """Compares the output of `grainlab bag cat` with what independent readers give.
 
-compare_cat.py mcap FILE.mcap < lines    every message by mcap and mcap-ros2-support
-compare_cat.py rosbags PATH < lines      every message by rosbags; PATH is a directory or a file
+compare_cat.py mcap FILE.mcap LINES    every message by mcap and mcap-ros2-support
+compare_cat.py rosbags PATH LINES      every message by rosbags; PATH is a directory or a file
 
 Times, topics, types and all values have to be equal. Prints the number of messages; exit 1 at the first difference.
 """
@@ -70,8 +70,9 @@ def key(entry):
     return entry["log_time"], entry["topic"]
 
 
-def main(reader, path):
-    ours = sorted((json.loads(line) for line in sys.stdin), key=key)
+def main(reader, path, lines):
+    with open(lines, encoding="utf8") as file:
+        ours = sorted(map(json.loads, file), key=key)
     names = ("topic", "type", "log_time", "data")
     found = ({"mcap": by_mcap, "rosbags": by_rosbags}[reader])(path)
     theirs = sorted((dict(zip(names, m)) for m in found), key=key)

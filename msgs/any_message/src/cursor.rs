@@ -1,4 +1,7 @@
-//! Aligned reading of CDR.
+//! Aligned reading and writing of CDR.
+
+/// Encapsulation header of plain CDR, little endian.
+pub(crate) const HEADER: [u8; 4] = [0, 1, 0, 0];
 
 pub(crate) struct Cursor<'a> {
     body: &'a [u8],
@@ -6,10 +9,12 @@ pub(crate) struct Cursor<'a> {
     big_endian: bool,
 }
 
-/// A type that CDR has as so many bytes.
-pub(crate) trait Fixed: Sized {
+/// A type that CDR has as this many bytes.
+pub(crate) trait Fixed: Copy {
     const SIZE: usize;
     fn from(bytes: &[u8], big_endian: bool) -> Self;
+    /// Appends the bytes in little endian.
+    fn append(self, to: &mut Vec<u8>);
 }
 
 macro_rules! fixed {
@@ -23,6 +28,11 @@ macro_rules! fixed {
                 exact.copy_from_slice(bytes);
                 if big_endian { Self::from_be_bytes(exact) } else { Self::from_le_bytes(exact) }
             }
+
+            #[inline]
+            fn append(self, to: &mut Vec<u8>) {
+                to.extend(self.to_le_bytes());
+            }
         }
     )*};
 }
@@ -34,6 +44,19 @@ impl Fixed for bool {
     #[inline]
     fn from(bytes: &[u8], _: bool) -> Self {
         bytes[0] != 0
+    }
+
+    #[inline]
+    fn append(self, to: &mut Vec<u8>) {
+        to.push(self.into());
+    }
+}
+
+/// Appends values in little endian, aligned to their size from the end of the header.
+pub(crate) fn put<T: Fixed>(values: &[T], to: &mut Vec<u8>) {
+    if !values.is_empty() {
+        to.resize(HEADER.len() + (to.len() - HEADER.len()).next_multiple_of(T::SIZE), 0);
+        values.iter().for_each(|value| value.append(to));
     }
 }
 

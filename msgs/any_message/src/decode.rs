@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::cursor::Cursor;
 use crate::schema::Schema;
-use crate::types::{Element, FieldType, Length, MessageType, Primitive};
+use crate::types::{Element, FieldType, Length, MessageType};
 use crate::value::{Array, Message, Value};
 
 /// Memory of a decoded message per byte of it, and for any message, bytes.
@@ -137,21 +137,8 @@ impl Decoder<'_> {
         if let Element::Primitive(primitive) = element {
             self.spend(length, primitive.size())?;
         }
-        let c = &mut self.cursor;
         Ok(match element {
-            Element::Primitive(primitive) => match primitive {
-                Primitive::Bool => Array::Bool(c.many(length)?),
-                Primitive::I8 => Array::I8(c.many(length)?),
-                Primitive::U8 => Array::U8(c.many(length)?),
-                Primitive::I16 => Array::I16(c.many(length)?),
-                Primitive::U16 => Array::U16(c.many(length)?),
-                Primitive::I32 => Array::I32(c.many(length)?),
-                Primitive::U32 => Array::U32(c.many(length)?),
-                Primitive::I64 => Array::I64(c.many(length)?),
-                Primitive::U64 => Array::U64(c.many(length)?),
-                Primitive::F32 => Array::F32(c.many(length)?),
-                Primitive::F64 => Array::F64(c.many(length)?),
-            },
+            Element::Primitive(primitive) => Array::read(*primitive, &mut self.cursor, length)?,
             Element::String(bound) => Array::Text(self.each(length, |d| d.string(*bound))?),
             Element::WString(bound) => Array::Text(self.each(length, |d| d.wide_string(*bound))?),
             Element::Message(kind) => Array::Message(self.each(length, |d| d.message(kind))?),

@@ -123,29 +123,15 @@ fn primitive(kind: Primitive, given: &Json) -> Option<Value> {
 
 /// The array of these values, all of one kind.
 fn gathered(element: &Element, all: Vec<Value>) -> Array {
-    macro_rules! of {
-        ($kind:ident) => {
-            Array::$kind(
-                all.into_iter()
-                    .filter_map(|v| if let Value::$kind(v) = v { Some(v) } else { None })
-                    .collect(),
-            )
-        };
-    }
+    let all = all.into_iter();
     match element {
-        Element::Primitive(Primitive::Bool) => of!(Bool),
-        Element::Primitive(Primitive::I8) => of!(I8),
-        Element::Primitive(Primitive::U8) => of!(U8),
-        Element::Primitive(Primitive::I16) => of!(I16),
-        Element::Primitive(Primitive::U16) => of!(U16),
-        Element::Primitive(Primitive::I32) => of!(I32),
-        Element::Primitive(Primitive::U32) => of!(U32),
-        Element::Primitive(Primitive::I64) => of!(I64),
-        Element::Primitive(Primitive::U64) => of!(U64),
-        Element::Primitive(Primitive::F32) => of!(F32),
-        Element::Primitive(Primitive::F64) => of!(F64),
-        Element::String(_) | Element::WString(_) => of!(Text),
-        Element::Message(_) => of!(Message),
+        Element::Primitive(kind) => Array::of(*kind, all.collect()),
+        Element::String(_) | Element::WString(_) => {
+            Array::Text(all.filter_map(|v| if let Value::Text(v) = v { Some(v) } else { None }).collect())
+        }
+        Element::Message(_) => Array::Message(
+            all.filter_map(|v| if let Value::Message(v) = v { Some(v) } else { None }).collect(),
+        ),
     }
 }
 

@@ -73,47 +73,34 @@ pub enum Element {
     Message(Arc<MessageType>),
 }
 
-/// Types of fixed size.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Primitive {
-    /// ROS type `bool`.
-    Bool,
-    /// ROS type `int8`.
-    I8,
-    /// `uint8`, `byte` and `char`.
-    U8,
-    /// ROS type `int16`.
-    I16,
-    /// ROS type `uint16`.
-    U16,
-    /// ROS type `int32`.
-    I32,
-    /// ROS type `uint32`.
-    U32,
-    /// ROS type `int64`.
-    I64,
-    /// ROS type `uint64`.
-    U64,
-    /// ROS type `float32`.
-    F32,
-    /// ROS type `float64`.
-    F64,
+/// Passes the primitives to a macro: for each its variant, its type in Rust, and its name in a message file.
+macro_rules! with_primitives {
+    ($take:ident) => {
+        $take! {
+            Bool bool "bool", I8 i8 "int8", U8 u8 "uint8", I16 i16 "int16", U16 u16 "uint16", I32 i32 "int32",
+            U32 u32 "uint32", I64 i64 "int64", U64 u64 "uint64", F32 f32 "float32", F64 f64 "float64"
+        }
+    };
 }
+pub(crate) use with_primitives;
 
-/// Each primitive with its name in a message file and its bytes, in the order of the list.
-const PRIMITIVES: [(Primitive, &str, usize); 11] = [
-    (Primitive::Bool, "bool", 1),
-    (Primitive::I8, "int8", 1),
-    (Primitive::U8, "uint8", 1),
-    (Primitive::I16, "int16", 2),
-    (Primitive::U16, "uint16", 2),
-    (Primitive::I32, "int32", 4),
-    (Primitive::U32, "uint32", 4),
-    (Primitive::I64, "int64", 8),
-    (Primitive::U64, "uint64", 8),
-    (Primitive::F32, "float32", 4),
-    (Primitive::F64, "float64", 8),
-];
+macro_rules! primitives {
+    ($($kind:ident $rust:ident $name:literal),*) => {
+        /// Types of fixed size.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Primitive {
+            $(
+                #[doc = concat!("ROS type `", $name, "`.")]
+                $kind,
+            )*
+        }
+
+        /// Each primitive with its name in a message file and its bytes, in the order of the list.
+        const PRIMITIVES: &[(Primitive, &str, usize)] =
+            &[$((Primitive::$kind, $name, size_of::<$rust>())),*];
+    };
+}
+with_primitives!(primitives);
 
 impl Primitive {
     /// The type of this name in a message file. `char` is `uint8` in ROS 2, and so is `byte`.

@@ -8,14 +8,11 @@
 //!
 //! Both messages have the stamp and the frame of the packing, `cell`. They are functions of the packing alone.
 
-mod chains;
 mod colours;
 mod drawn;
-mod marker;
 mod markers;
 mod picture;
 mod points;
-mod spheres;
 
 pub use colours::{Colour, MOST_CONTACTS, RAMP, RATTLER, by_coordination, ramp};
 pub use drawn::{Drawn, DrawnContact};

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 use grainlab_recordings::{Recording, Selection};
 use serde_json::Value;
@@ -14,37 +14,27 @@ use system_tests::wait::LIMIT;
 const READERS: &str = "mcap_ros2, rosbags, zstandard, lz4, yaml";
 
 /// Runs a command that has to end with exit 0; its output.
+#[track_caller]
 fn run(lab: &Lab, arguments: &[&str]) -> String {
-    let ended = lab.run(arguments);
-    assert_eq!(ended.code, Some(0), "{arguments:?}\n{}{}", ended.stdout, ended.stderr);
-    ended.stdout
+    lab.run(arguments).assert_code(0).stdout
 }
 
 /// Asserts that `bag cat` prints what `reader` reads; returns the number of messages.
-fn compare(lab: &Lab, python: &Path, reader: &str, path: &str) -> usize {
-    let lines = lab.folder().join("cat.jsonl");
-    let to = std::fs::File::create(&lines).unwrap();
-    let cat = lab.command(&["bag", "cat", path]).stdout(Stdio::from(to)).status().unwrap();
-    assert!(cat.success(), "{path}");
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tools/compare_cat.py");
-    let output = Command::new(python)
-        .arg(script)
-        .args([reader, path])
-        .current_dir(lab.folder())
-        .stdin(std::fs::File::open(&lines).unwrap())
-        .output()
-        .unwrap();
-    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
-    assert!(output.status.success(), "{reader} {path}\n{out}{err}");
-    out.trim().parse().unwrap()
+#[track_caller]
+fn compare(lab: &Lab, python: &Path, reader: &str, path: &Path) -> usize {
+    let path = path.to_str().unwrap();
+    let lines = lab.write("cat.jsonl", &run(lab, &["bag", "cat", path]));
+    python::succeeds(python, "compare_cat.py", &[reader, path, lines.to_str().unwrap()])
+        .trim()
+        .parse()
+        .unwrap()
 }
 
 /// Recordings by the Python packages rosbags and mcap.
 fn foreign(lab: &Lab, python: &Path) -> PathBuf {
     let folder = lab.folder().join("foreign");
     std::fs::create_dir(&folder).unwrap();
-    let made = python::tool(python, "make_bags.py", &[folder.to_str().unwrap()]);
-    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    python::succeeds(python, "make_bags.py", &[folder.to_str().unwrap()]);
     folder
 }
 
@@ -55,13 +45,13 @@ fn cat_prints_every_value_of_recordings_by_other_programs() {
     let folder = foreign(&lab, &python);
     for name in ["none", "lz4", "zstd", "unchunked"] {
         let path = folder.join(format!("{name}.mcap"));
-        assert_eq!(compare(&lab, &python, "mcap", path.to_str().unwrap()), 240, "{name}");
+        assert_eq!(compare(&lab, &python, "mcap", &path), 240, "{name}");
         let info = run(&lab, &["bag", "info", path.to_str().unwrap(), "--format", "json"]);
         let info: serde_json::Value = serde_json::from_str(&info).unwrap();
         assert_eq!(info["messages"], 240, "{name}");
     }
     let bag = folder.join("rosbags");
-    assert_eq!(compare(&lab, &python, "rosbags", bag.to_str().unwrap()), 240);
+    assert_eq!(compare(&lab, &python, "rosbags", &bag), 240);
     // Tables have a row for each message.
     for format in ["csv", "json"] {
         let out = format!("tables_{format}");
@@ -97,16 +87,12 @@ fn copies_pass_the_acceptance_check_and_python_reads_the_same_values() {
         let arguments = [&["bag", "convert"], arguments, &["-o", out]].concat();
         run(&lab, &arguments);
         let path = lab.folder().join(out);
-        let check = python::tool(&python, "check_mcap.py", &[path.to_str().unwrap()]);
-        let text = String::from_utf8_lossy(&check.stdout);
-        assert!(check.status.success(), "{arguments:?}\n{text}{}", String::from_utf8_lossy(&check.stderr));
+        python::succeeds(&python, "check_mcap.py", &[path.to_str().unwrap()]);
         let messages = Recording::open(&path).unwrap().info().messages;
-        let file = if out.ends_with(".mcap") { out.to_owned() } else { format!("{out}/{out}_0.mcap") };
+        let file = if path.is_dir() { path.join(format!("{out}_0.mcap")) } else { path.clone() };
         assert_eq!(compare(&lab, &python, "mcap", &file), messages as usize, "{out}");
-        assert_eq!(compare(&lab, &python, "rosbags", out), messages as usize, "{out}");
-        let again = lab.run(&arguments);
-        assert_eq!(again.code, Some(2), "{}", again.stderr);
-        assert!(again.stderr.contains("exists"), "{}", again.stderr);
+        assert_eq!(compare(&lab, &python, "rosbags", &path), messages as usize, "{out}");
+        lab.run(&arguments).assert_code(2).assert_says(&["exists"]);
     }
     let count = |path: &str| Recording::open(&lab.folder().join(path)).unwrap().info().messages;
     assert_eq!((count("imu"), count("small.mcap")), (200, 240));
@@ -122,18 +108,8 @@ fn steps_are_played_one_by_one_and_a_recorder_takes_the_topics_it_is_told_to() {
     let lab = Lab::new();
     let source = lab.launch(&golden("scenes/tiny.toml"), &[]);
     let source = source.to_str().unwrap();
-    let recorder = lab.start(&[
-        "bag",
-        "record",
-        "--regex",
-        "/(stress|packing|packing_report)",
-        "--exclude-topics",
-        "packing",
-        "--compression",
-        "lz4",
-        "-o",
-        "again",
-    ]);
+    let record = "bag record --regex /(stress|packing|packing_report) --exclude-topics packing --compression lz4 -o again";
+    let recorder = lab.start(&record.split(' ').collect::<Vec<_>>());
     // Five steps, and the end of stdin.
     let lines = lab.folder().join("lines");
     std::fs::write(&lines, "\n\ns\n\n\n").unwrap();
@@ -145,9 +121,7 @@ fn steps_are_played_one_by_one_and_a_recorder_takes_the_topics_it_is_told_to() {
         .unwrap();
     let said = String::from_utf8_lossy(&play.stderr).into_owned();
     assert!(play.status.success() && said.contains("5 messages sent"), "{said}");
-    recorder.signal(libc::SIGINT);
-    let ended = recorder.ended(LIMIT);
-    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    recorder.ended_by(libc::SIGINT).assert_code(0);
     let recording = Recording::open(&lab.folder().join("again")).unwrap();
     let info = recording.info();
     let names: Vec<&str> = info.topics.iter().map(|t| t.name.as_str()).collect();
@@ -165,9 +139,7 @@ fn peer(lab: &Lab, python: &Path, what: &str) -> Process {
 
 /// Output of the other program: messages by topic.
 fn messages(peer: Process) -> BTreeMap<String, Vec<Value>> {
-    let ended = peer.ended(LIMIT);
-    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
-    serde_json::from_str(&ended.stdout).unwrap()
+    serde_json::from_str(&peer.ended(LIMIT).assert_code(0).stdout).unwrap()
 }
 
 #[test]
@@ -179,20 +151,15 @@ fn topics_of_any_type_are_recorded_and_played_back_with_every_value() {
         ("demo_msgs/msg/One.msg", "uint8 value\n"),
         ("demo_msgs/msg/Pair.msg", "std_msgs/Header header\nOne[] ones\nfloat64[3] xyz\nbool ok\n"),
     ] {
-        let path = lab.folder().join("messages").join(file);
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(path, text).unwrap();
+        std::fs::create_dir_all(lab.folder().join("messages").join(file).parent().unwrap()).unwrap();
+        lab.write(&format!("messages/{file}"), text);
     }
     let recorder = lab.start(&["bag", "record", "-a", "--msg-path", "messages", "-o", "any"]);
     let sent = messages(peer(&lab, &python, "publish"));
-    recorder.signal(libc::SIGINT);
-    let ended = recorder.ended(LIMIT);
-    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    let ended = recorder.ended_by(libc::SIGINT).assert_code(0);
     let warned = ended.stderr.lines().filter(|l| l.contains("without a schema")).collect::<Vec<_>>();
-    assert!(
-        matches!(warned[..], [one] if one.contains("/mystery") && one.contains("--msg-path")),
-        "{warned:?}"
-    );
+    let [one] = warned[..] else { panic!("{warned:?}") };
+    assert!(one.contains("/mystery") && one.contains("--msg-path"), "{one}");
 
     // Those with a schema, decoded by three readers.
     let topics: Vec<&str> = sent.keys().map(String::as_str).collect();
@@ -200,11 +167,11 @@ fn topics_of_any_type_are_recorded_and_played_back_with_every_value() {
     let known = ["--topics", "chatter", "late", "scan/pairs"];
     run(&lab, &[&["bag", "convert", "any", "--format", "mcap", "-o", "known"], &known[..]].concat());
     let total: usize = sent.iter().filter(|(name, _)| *name != "/mystery").map(|(_, all)| all.len()).sum();
-    for (reader, path) in [("mcap", "known/known_0.mcap"), ("rosbags", "known")] {
+    let known = lab.folder().join("known");
+    for (reader, path) in [("mcap", &known.join("known_0.mcap")), ("rosbags", &known)] {
         assert_eq!(compare(&lab, &python, reader, path), total, "{reader}");
     }
-    let check = python::tool(&python, "check_mcap.py", &[lab.folder().join("known").to_str().unwrap()]);
-    assert!(check.status.success(), "{}", String::from_utf8_lossy(&check.stdout));
+    python::succeeds(&python, "check_mcap.py", &[known.to_str().unwrap()]);
     let mut read: BTreeMap<String, Vec<Value>> = BTreeMap::new();
     for line in run(&lab, &["bag", "cat", "known"]).lines() {
         let line: Value = serde_json::from_str(line).unwrap();
@@ -248,9 +215,7 @@ fn a_recording_of_another_program_is_played_and_recorded_again_byte_for_byte() {
     let recorder = lab.start(&[&["bag", "record", "-o", "again"], &topics[..]].concat());
     let overrides = ["--qos-profile-overrides-path", "qos.yaml"];
     run(&lab, &[&["bag", "play", source.to_str().unwrap()], &overrides[..]].concat());
-    recorder.signal(libc::SIGINT);
-    let ended = recorder.ended(LIMIT);
-    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    recorder.ended_by(libc::SIGINT).assert_code(0);
     let (before, after) =
         (Recording::open(&source).unwrap(), Recording::open(&lab.folder().join("again")).unwrap());
     for (topic, count, reliability) in [("/imu", 200, 2), ("/joints", 20, 1), ("/camera/image", 20, 1)] {
@@ -282,21 +247,17 @@ fn a_difference_of_recordings_is_named_by_topic_message_and_field_and_none_is_ex
         let [a, b] = [a, b].map(|path| path.to_str().unwrap().to_owned());
         lab.run(&[&["bag", "diff", &a, &b][..], more].concat())
     };
-    let same = diff(&one, &many, &[]);
-    assert_eq!(same.code, Some(0), "{}{}", same.stdout, same.stderr);
+    let same = diff(&one, &many, &[]).assert_code(0);
     let stress = same.stdout.lines().find(|l| l.starts_with("/stress ")).unwrap();
     assert!(stress.contains("same") && stress.contains("differ"), "payload and times: {stress}");
     assert_eq!(diff(&one, &many, &["--topics", "stress", "--times"]).code, Some(1));
     assert_eq!(diff(&one, &many, &["--all"]).code, Some(1), "reports of processes");
-    let differs = diff(&many, &other, &["--topics", "packing"]);
-    assert_eq!(differs.code, Some(1));
-    assert!(differs.stdout.contains("/packing: message 1: "), "{}", differs.stdout);
+    diff(&many, &other, &["--topics", "packing"]).assert_code(1).assert_prints(&["/packing: message 1: "]);
     let without = lab.folder().join("without");
     let [source, to] = [&many, &without].map(|path| path.to_str().unwrap());
     let left_out = ["bag", "convert", source, "--exclude", "stress", "--format", "mcap", "-o", to];
-    assert_eq!(lab.run(&left_out).code, Some(0));
-    let missing = diff(&many, &without, &["--times"]);
-    assert_eq!(missing.code, Some(1));
+    run(&lab, &left_out);
+    let missing = diff(&many, &without, &["--times"]).assert_code(1);
     assert_eq!(missing.stdout.matches("only in A").count(), 1, "{}", missing.stdout);
     // Equal bytes by another definition are other values.
     let swapped = "import sys; from mcap.writer import Writer\n\
@@ -305,11 +266,12 @@ fn a_difference_of_recordings_is_named_by_topic_message_and_field_and_none_is_ex
                    c = w.register_channel('/p', 'cdr', w.register_schema('d/msg/P', 'ros2msg', text.encode()))\n    \
                    w.add_message(c, 1, b'\\0\\1\\0\\0' + b'\\1' * 16, 1); w.finish()";
     if let Some(python) = python::with("mcap") {
-        let made = Command::new(python).args(["-c", swapped]).current_dir(lab.folder()).status().unwrap();
-        assert!(made.success());
-        let differs = lab.run(&["bag", "diff", "xy.mcap", "yx.mcap"]);
-        assert!(differs.code == Some(1) && differs.stdout.contains("its definition"), "{}", differs.stdout);
+        python::code(&python, swapped, &[], lab.folder());
+        lab.run(&["bag", "diff", "xy.mcap", "yx.mcap"]).assert_code(1).assert_prints(&["its definition"]);
     }
-    let late = lab.run(&["bag", "convert", source, "--start-offset", "500", "-o", "late.mcap"]);
-    assert!(late.code == Some(2) && late.stderr.contains("the recording has"), "{}", late.stderr);
+    let refused = |arguments: &[&str], words| {
+        lab.run(&[&["bag", "convert", source], arguments].concat()).assert_code(2).assert_says(&[words]);
+    };
+    refused(&["--start-offset", "500", "-o", "late.mcap"], "the recording has");
+    refused(&[to, "-o", "both.csv"], "both.csv: this would be a recording, and has the name of a table");
 }

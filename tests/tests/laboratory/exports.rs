@@ -13,20 +13,10 @@ fn readers_of_other_projects_find_every_number_of_an_exported_packing() {
     for packing in [golden("yade/packing.csv"), run] {
         let folder = lab.folder().join(packing.file_name().unwrap());
         for format in ["csv", "vtk", "xyz", "lammps", "lammps-data"] {
-            let out = folder.join(format);
-            let ended = lab.run(&[
-                "bag",
-                "export",
-                packing.to_str().unwrap(),
-                "--format",
-                format,
-                "--out",
-                out.to_str().unwrap(),
-            ]);
-            assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+            let [packing, out] =
+                [&packing, &folder.join(format)].map(|path| path.to_str().unwrap().to_owned());
+            lab.run(&["bag", "export", &packing, "--format", format, "--out", &out]).assert_code(0);
         }
-        let read = python::tool(&python, "read_exports.py", &[folder.to_str().unwrap()]);
-        let (out, err) = (String::from_utf8_lossy(&read.stdout), String::from_utf8_lossy(&read.stderr));
-        assert!(read.status.success(), "{out}{err}");
+        python::succeeds(&python, "read_exports.py", &[folder.to_str().unwrap()]);
     }
 }

@@ -52,19 +52,8 @@ fn analyze_of_a_recording_gives_the_numbers_and_the_bytes_of_the_live_run() {
     let (states, summary) = (analyzed.json(), summary(&live));
     assert_eq!((states.as_array().unwrap().len(), summary["states"].as_array().unwrap().len()), (2, 2));
     for (state, recorded) in states.as_array().unwrap().iter().zip(summary["states"].as_array().unwrap()) {
-        for key in [
-            "step",
-            "grains",
-            "phi",
-            "k",
-            "z",
-            "rattlers",
-            "eps",
-            "stiffness_pa",
-            "g12_pa",
-            "g13_pa",
-            "theta_pa",
-        ] {
+        let keys = "step grains phi k z rattlers eps stiffness_pa g12_pa g13_pa theta_pa";
+        for key in keys.split(' ') {
             assert!(state[key] == recorded[key] && !state[key].is_null(), "{key}: {state} {recorded}");
         }
     }

@@ -1,6 +1,5 @@
 //! Tables of recordings beside rosbags, and definitions that a recording lacks.
 
-use std::path::Path;
 use std::process::{Command, Stdio};
 use system_tests::lab::{Lab, golden};
 use system_tests::python;
@@ -8,96 +7,73 @@ use system_tests::terminal::Terminal;
 
 const PAGE: &str = include_str!("../../../recordings/README.md");
 
-/// Runs a command that has to end with this exit code; its stdout and stderr.
-fn run(lab: &Lab, arguments: &[&str], code: i32) -> String {
-    let ended = lab.run(arguments);
-    assert_eq!(ended.code, Some(code), "{arguments:?}\n{}{}", ended.stdout, ended.stderr);
-    ended.stdout + &ended.stderr
-}
-
 #[test]
 fn every_value_of_a_csv_table_is_that_of_rosbags_and_the_recipe_of_the_page_reads_it() {
     let Some(python) = python::with("rosbags, pandas, pyarrow") else { return };
     let lab = Lab::new();
     let ours = lab.launch(&golden("scenes/tiny.toml"), &[]);
-    let made = python::tool(&python, "make_bags.py", &[lab.folder().to_str().unwrap()]);
-    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    python::succeeds(&python, "make_bags.py", &[lab.folder().to_str().unwrap()]);
     let ours = ours.to_str().unwrap();
     for (path, folder) in [(ours, "tables"), ("rosbags", "others")] {
-        run(&lab, &["bag", "convert", path, "--format", "csv", "-o", folder], 0);
+        lab.run(&["bag", "convert", path, "--format", "csv", "-o", folder]).assert_code(0);
         let [path, folder] = [path, folder].map(|p| lab.folder().join(p).to_str().unwrap().to_owned());
-        let compared = python::tool(&python, "compare_csv.py", &[&path, &folder]);
-        assert!(compared.status.success(), "{}", String::from_utf8_lossy(&compared.stderr));
+        python::succeeds(&python, "compare_csv.py", &[&path, &folder]);
     }
-    run(&lab, &["bag", "convert", ours, "--format", "json", "-o", "lines"], 0);
+    lab.run(&["bag", "convert", ours, "--format", "json", "-o", "lines"]).assert_code(0);
     let recipe = PAGE.split("```python\n").nth(1).unwrap().split("```").next().unwrap();
-    let read = Command::new(&python).args(["-c", recipe]).current_dir(lab.folder()).output().unwrap();
-    let (out, err) = (String::from_utf8_lossy(&read.stdout), String::from_utf8_lossy(&read.stderr));
-    assert!(read.status.success() && out.contains("hertz-mindlin") && out.contains("pressure"), "{out}{err}");
+    let out = python::code(&python, recipe, &[], lab.folder());
+    assert!(out.contains("hertz-mindlin") && out.contains("pressure"), "{out}");
 }
 
-/// Writes a recording with a topic whose definition is not in it.
-fn without_definition(python: &Path, path: &Path) {
-    let script = "import sys; from mcap.writer import Writer; f = open(sys.argv[1], 'wb'); w = Writer(f); w.start('ros2')\n\
-                  for topic, kind, data in [('/odd', 'demo_msgs/msg/Odd', b'\\0\\1\\0\\0\\7'), ('/text', 'std_msgs/msg/String', \
-                  b'\\0\\1\\0\\0\\3\\0\\0\\0hi\\0'), ('text', 'std_msgs/msg/Empty', b'\\0\\1\\0\\0\\0')]:\n    schema = w.register_schema(kind, '', b'')\n    \
-                  channel = w.register_channel(topic, 'cdr', schema)\n    w.add_message(channel, 5, data, 5)\nw.finish()";
-    let made = Command::new(python).args(["-c", script]).arg(path).output().unwrap();
-    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
-}
+/// Writes a recording with topics whose definitions are not in it.
+const WITHOUT_DEFINITION: &str = "from mcap.writer import Writer; f = open('old.mcap', 'wb'); w = Writer(f); w.start('ros2')
+for topic, kind, data in [('/odd', 'demo_msgs/msg/Odd', b'\\0\\1\\0\\0\\7'),
+        ('/text', 'std_msgs/msg/String', b'\\0\\1\\0\\0\\3\\0\\0\\0hi\\0'), ('text', 'std_msgs/msg/Empty', b'\\0\\1\\0\\0\\0')]:
+    channel = w.register_channel(topic, 'cdr', w.register_schema(kind, '', b''))
+    w.add_message(channel, 5, data, 5)
+w.finish()";
 
 #[test]
 fn definitions_that_a_recording_lacks_come_from_a_folder_and_can_be_added_to_it() {
     let Some(python) = python::with("mcap, rosbags") else { return };
     let lab = Lab::new();
-    without_definition(&python, &lab.folder().join("old.mcap"));
-    let folder = lab.folder().join("types/demo_msgs/msg");
-    std::fs::create_dir_all(&folder).unwrap();
-    std::fs::write(folder.join("Odd.msg"), "uint8 n\n").unwrap();
-    let path = ["--msg-path", "types"];
+    python::code(&python, WITHOUT_DEFINITION, &[], lab.folder());
+    let define = |folder: &str, text: &str| {
+        std::fs::create_dir_all(lab.folder().join(folder).join("demo_msgs/msg")).unwrap();
+        lab.write(&format!("{folder}/demo_msgs/msg/Odd.msg"), text);
+    };
+    define("types", "uint8 n\n");
+    let bag = |words: &[&str], code| lab.run(&[&["bag"], words].concat()).assert_code(code);
 
-    let alone = run(&lab, &["bag", "cat", "old.mcap"], 3);
-    assert!(alone.contains("\"hi\"") && alone.contains("demo_msgs/msg/Odd.msg with --msg-path"), "{alone}");
-    let given = run(&lab, &[&["bag", "cat", "old.mcap"], &path[..]].concat(), 0);
-    assert!(
-        given.contains("{\"n\":7}") && given.contains("/odd: the recording has no definition"),
-        "{given}"
-    );
-    assert!(run(&lab, &["bag", "info", "old.mcap", "--format", "csv"], 0).contains("missing"));
-    let check = run(&lab, &["bag", "check", "old.mcap"], 0);
-    assert!(check.contains("/odd: the recording has no definition of demo_msgs/msg/Odd"), "{check}");
-    run(&lab, &[&["bag", "convert", "old.mcap", "--format", "csv", "-o", "csv"], &path[..]].concat(), 0);
+    bag(&["cat", "old.mcap"], 3)
+        .assert_prints(&["\"hi\""])
+        .assert_says(&["demo_msgs/msg/Odd.msg with --msg-path"]);
+    bag(&["cat", "old.mcap", "--msg-path", "types"], 0)
+        .assert_prints(&["{\"n\":7}"])
+        .assert_says(&["/odd: the recording has no definition"]);
+    bag(&["info", "old.mcap", "--format", "csv"], 0).assert_prints(&["missing"]);
+    let missing = "/odd: the recording has no definition of demo_msgs/msg/Odd";
+    bag(&["check", "old.mcap"], 0).assert_prints(&[missing]);
+    bag(&["convert", "old.mcap", "--format", "csv", "-o", "csv", "--msg-path", "types"], 0);
 
     // A topic that differs by the slash alone, of a type without fields, is another one.
-    let tables =
-        run(&lab, &[&["bag", "convert", "old.mcap", "--format", "json", "-o", "t"], &path[..]].concat(), 0);
-    assert!(
-        tables.contains("text.jsonl  /text  1 row") && tables.contains("text.2.jsonl  text  1 row"),
-        "{tables}"
-    );
+    bag(&["convert", "old.mcap", "--format", "json", "-o", "t", "--msg-path", "types"], 0)
+        .assert_prints(&["text.jsonl  /text  1 row", "text.2.jsonl  text  1 row"]);
 
+    let with =
+        |folder: &str, to: &str, code| bag(&["convert", "old.mcap", "--msg-path", folder, "-o", to], code);
     std::fs::create_dir_all(lab.folder().join("wrong/demo_msgs/msg")).unwrap();
-    let with = |folder: &str, to: &str, code| {
-        run(&lab, &["bag", "convert", "old.mcap", "--msg-path", folder, "-o", to], code)
-    };
-    let part = with("wrong", "part.mcap", 3);
-    assert!(part.contains("/odd: the recording has no definition of demo_msgs/msg/Odd"), "{part}");
-    assert!(run(&lab, &["bag", "info", "part.mcap", "--format", "csv"], 0).contains("missing"), "{part}");
-    std::fs::write(lab.folder().join("wrong/demo_msgs/msg/Odd.msg"), "float64 n\n").unwrap();
-    let wrong = with("wrong", "wrong.mcap", 1);
-    assert!(wrong.contains("nothing was written") && !lab.folder().join("wrong.mcap").exists(), "{wrong}");
+    with("wrong", "part.mcap", 3).assert_says(&[missing]);
+    bag(&["info", "part.mcap", "--format", "csv"], 0).assert_prints(&["missing"]);
+    define("wrong", "float64 n\n");
+    with("wrong", "wrong.mcap", 1).assert_says(&["nothing was written"]);
+    assert!(!lab.folder().join("wrong.mcap").exists());
     with("types", "new.mcap", 0);
-    assert!(run(&lab, &["bag", "cat", "new.mcap"], 0).contains("{\"n\":7}"));
-    let read = "import sys; from rosbags.highlevel import AnyReader; from pathlib import Path\n\
-                with AnyReader([Path(sys.argv[1])]) as r: print([r.deserialize(d, c.msgtype) for c, _, d in r.messages()])";
-    let new = lab.folder().join("new.mcap");
-    let read = Command::new(&python).args(["-c", read]).arg(new).output().unwrap();
-    let out = String::from_utf8_lossy(&read.stdout);
-    assert!(
-        out.contains("n=7") && out.contains("data='hi'"),
-        "{out}{}",
-        String::from_utf8_lossy(&read.stderr)
-    );
+    bag(&["cat", "new.mcap"], 0).assert_prints(&["{\"n\":7}"]);
+    let read = "from rosbags.highlevel import AnyReader; from pathlib import Path\n\
+                with AnyReader([Path('new.mcap')]) as r: print([r.deserialize(d, c.msgtype) for c, _, d in r.messages()])";
+    let out = python::code(&python, read, &[], lab.folder());
+    assert!(out.contains("n=7") && out.contains("data='hi'"), "{out}");
 }
 
 #[test]
@@ -108,9 +84,7 @@ fn a_conversion_of_more_than_a_second_shows_its_progress_on_a_terminal_and_erase
                   schema = w.register_schema('p/msg/Many', 'ros2msg', b'float64[] x')\n\
                   channel = w.register_channel('/many', 'cdr', schema); body = b'\\0\\1\\0\\0\\x90\\x5f\\1\\0' + b'\\0' * 4 + b'\\0' * 8 * 90000\n\
                   for n in range(400): w.add_message(channel, n, body, n)\nw.finish()";
-    let made =
-        Command::new(&python).args(["-c", script, "many.mcap"]).current_dir(lab.folder()).output().unwrap();
-    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    python::code(&python, script, &["many.mcap"], lab.folder());
     // Stopped for a while: it takes more than a second however fast the host is.
     let stopped = "& p=$!; sleep 0.3; kill -STOP $p; sleep 1.2; kill -CONT $p; wait $p";
     let grainlab = system_tests::lab::grainlab();

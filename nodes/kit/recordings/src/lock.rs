@@ -1,6 +1,5 @@
 //! One process at a time in a directory.
 
-use crate::host::host_name;
 use grainlab_console::{Failure, append_to, input};
 use std::fmt;
 use std::fs::{File, TryLockError};
@@ -143,6 +142,12 @@ impl Drop for Lock {
         // A process that is being started has this file as well until its program begins, and would hold the lock.
         let _ = self.file.unlock();
     }
+}
+
+/// Name of this host; `unknown` if the system does not say it.
+pub fn host_name() -> String {
+    let name = std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
+    if name.trim().is_empty() { "unknown".to_owned() } else { name.trim().to_owned() }
 }
 
 /// First word of the text of a lock.

@@ -30,19 +30,18 @@ use grainlab_msgs::Guid;
 
 mod counted;
 mod device_sync;
-mod free_space;
 mod names;
 mod options;
 pub(crate) mod part;
-mod reserve;
+mod space;
 mod topic_spec;
 
-pub(crate) use free_space::free_space;
 pub(crate) use names::is_locked;
 pub use names::recording_in;
 use names::{next_number, part_path, refuse_recording, session};
 pub use options::WriterOptions;
 use part::Part;
+use space::free_space;
 pub use topic_spec::TopicSpec;
 
 /// A sample received from the network.
@@ -92,8 +91,9 @@ pub struct Finished {
 pub struct RunWriter {
     directory: PathBuf,
     name: String,
-    /// Name of the file being written.
+    /// Number of the file being written.
     number: u64,
+    /// Path of the file being written.
     file: PathBuf,
     options: WriterOptions,
     /// `None` only after the end.

@@ -1,7 +1,6 @@
 //! `grainlab bag cat`.
 
-use crate::decoders::Decoders;
-use crate::opened::losses;
+use crate::decoders::{Decoders, losses};
 use crate::selection::Excerpt;
 use clap::ValueEnum;
 use grainlab_any_message::Shown;

@@ -1,7 +1,6 @@
 //! `grainlab bag convert`: tables of a recording, or a recording made from others.
 
-use crate::decoders::Decoders;
-use crate::opened::losses;
+use crate::decoders::{Decoders, losses};
 use crate::progress::Progress;
 use crate::selection::Excerpt;
 use crate::tables::{TableFormat, Tables};
@@ -114,6 +113,13 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 
 /// Writes the recording, and prints what is in it.
 fn recording(args: &Args) -> Result<Exit, Failure> {
+    if args.output.extension().is_some_and(|e| ["csv", "json", "jsonl"].iter().any(|table| e == *table)) {
+        return Err(Failure::usage(format!(
+            "{}: this would be a recording, and has the name of a table: give it a name that ends with .mcap, or the name of a \
+             directory; tables are of one PATH",
+            args.output.display()
+        )));
+    }
     let recordings =
         args.paths.iter().map(|path| open(path, &args.messages)).collect::<Result<Vec<_>, _>>()?;
     let (topics, start, end) = args.excerpt.find(&recordings)?;

@@ -3,10 +3,20 @@
 use grainlab_any_message::{Message, Schema};
 use grainlab_console::{count, say};
 use grainlab_msgs::Exit;
-use grainlab_recordings::ChannelInfo;
+use grainlab_recordings::{ChannelInfo, Recording};
 use serde::de::IgnoredAny;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+
+/// Prints what could not be read; exit 3 if there is anything.
+pub(crate) fn losses(recordings: &[Recording]) -> Exit {
+    let mut exit = Exit::Done;
+    for warning in recordings.iter().flat_map(Recording::warnings) {
+        say!("grainlab: {warning}");
+        exit = Exit::DataLoss;
+    }
+    exit
+}
 
 /// The schemas of the channels, and what could not be decoded.
 #[derive(Default)]
@@ -104,25 +114,20 @@ impl Decoders {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainlab_recordings::{Recording, Selection};
-    use mcap::records::MessageHeader;
+    use crate::testing::recording;
+    use grainlab_recordings::Selection;
 
     #[test]
     fn json_is_kept_as_it_is_and_what_is_not_decoded_is_left_out_with_its_encoding_and_a_way() {
-        let file = tempfile::NamedTempFile::new().unwrap();
-        let mut writer = mcap::Writer::new(file.reopen().unwrap()).unwrap();
-        for (topic, encoding, payload) in [
+        let all = [
             ("/j", "json", "{\"b\": 1.50,\n \"a\": [1e2]}"),
             ("/j", "json", "{\"b\": \"line\nline\"}"),
             ("/p", "protobuf", "\u{8}\u{1}"),
-        ] {
-            let schema = writer.add_schema("my.X", "any", b"x").unwrap();
-            let channel_id = writer.add_channel(schema, topic, encoding, &BTreeMap::new()).unwrap();
-            let header = MessageHeader { channel_id, sequence: 0, log_time: 1, publish_time: 1 };
-            writer.write_to_known_channel(&header, payload.as_bytes()).unwrap();
-        }
-        writer.finish().unwrap();
-        let recording = Recording::open(file.path()).unwrap();
+        ];
+        let of = |(topic, encoding, payload): (&str, _, &str)| {
+            (topic.into(), encoding, ["X", "x"], payload.into())
+        };
+        let recording = recording(all.map(of));
         let messages: Vec<_> = recording.messages(&Selection::default()).unwrap().collect();
         let mut decoders = Decoders::default();
         assert_eq!(decoders.json(&messages[0]).unwrap(), "{\"b\": 1.50,  \"a\": [1e2]}");

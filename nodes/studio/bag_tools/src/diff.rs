@@ -1,14 +1,12 @@
 //! `grainlab bag diff`.
 
-use crate::opened::losses;
+use crate::decoders::losses;
 use crate::selection::Topics;
 use grainlab_console::{Failure, Format, Table, worse};
 use grainlab_msgs::Exit;
-use grainlab_recordings::{ChannelInfo, MessagePath};
+use grainlab_recordings::MessagePath;
 use side_by_side::{Compared, Pair};
-use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
-use std::sync::Arc;
 
 mod messages;
 mod side_by_side;
@@ -54,13 +52,7 @@ pub struct Args {
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let both = [args.messages.open(&args.first)?.0, args.messages.open(&args.second)?.0];
     let topics = args.topics.check(&both)?;
-    let channels = both.each_ref().map(|recording| {
-        let wanted = recording.channels().into_iter().filter(|c| topics.take(c));
-        wanted.map(|c| (c.topic.clone(), c)).collect::<BTreeMap<String, Arc<ChannelInfo>>>()
-    });
-    let names: BTreeSet<&String> = channels.iter().flat_map(BTreeMap::keys).collect();
-    let pair = |name: &'_ String| channels.each_ref().map(|all| all.get(name));
-    let pairs: Vec<Pair<'_>> = names.into_iter().map(|name| Pair { name, channels: pair(name) }).collect();
+    let pairs = side_by_side::pairs(&both, |channel| topics.take(channel));
     let mut rows = side_by_side::compare(&both, &pairs)?;
     for (row, pair) in rows.iter_mut().zip(&pairs) {
         judge(row, pair, args);
@@ -76,11 +68,11 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 }
 
 /// Completes the comparison of the messages of a topic by the comparison of its channels.
-fn judge(row: &mut Compared, pair: &Pair<'_>, args: &Args) {
+fn judge(row: &mut Compared, pair: &Pair, args: &Args) {
     let contract = pair.contract();
     let is_reproducible = contract.is_some_and(|topic| topic.reproducible);
     let not_compared = contract.is_some() && !is_reproducible && !args.all && !args.topics.is_given();
-    row.payload = match pair.channels {
+    row.payload = match &pair.channels {
         _ if not_compared => "not compared",
         [None, _] | [_, None] if row.messages == [0, 0] => "no messages",
         [Some(a), Some(b)] if !a.is_read_as(b) => {

@@ -7,13 +7,15 @@
 mod appended;
 mod cat;
 mod convert;
+mod csv_table;
 mod decoders;
 mod diff;
-mod opened;
 mod progress;
 mod selection;
-mod table;
+mod shape;
 mod tables;
+#[cfg(test)]
+mod testing;
 mod times;
 
 use clap::Subcommand;

@@ -2,10 +2,11 @@
 
 use crate::appended::Appended;
 use crate::cat;
+use crate::csv_table::{Columns, CsvTable};
 use crate::decoders::{Decoders, schema_of};
 use crate::progress::Progress;
 use crate::selection::Topics;
-use crate::table::{Columns, CsvTable, MOST_COLUMNS, Shape};
+use crate::shape::{MOST_COLUMNS, Shape};
 use grainlab_any_message::{Message as Decoded, Schema, Shown};
 use grainlab_console::{Failure, count};
 use grainlab_recordings::{ChannelInfo, Message, Recording, Selection};
@@ -243,21 +244,14 @@ fn file_name(topic: &str) -> Result<String, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mcap::records::MessageHeader;
+    use crate::testing::recording;
 
     /// A recording may have 65,535 topics, and a process 1024 open files.
     #[test]
     fn no_file_of_a_topic_stays_open() {
-        let file = tempfile::NamedTempFile::new().unwrap();
-        let mut writer = mcap::Writer::new(file.reopen().unwrap()).unwrap();
-        let schema = writer.add_schema("std_msgs/msg/String", "ros2msg", b"string data\n").unwrap();
-        for n in 0..20 {
-            let channel_id = writer.add_channel(schema, &format!("/t{n}"), "cdr", &BTreeMap::new()).unwrap();
-            let header = MessageHeader { channel_id, sequence: 0, log_time: 1, publish_time: 1 };
-            writer.write_to_known_channel(&header, b"\0\x01\0\0\x03\0\0\0hi\0").unwrap();
-        }
-        writer.finish().unwrap();
-        let recording = Recording::open(file.path()).unwrap();
+        let text = ["std_msgs/msg/String", "string data\n"];
+        let hi = b"\0\x01\0\0\x03\0\0\0hi\0";
+        let recording = recording((0..20).map(|n| (format!("/t{n}"), "cdr", text, hi.to_vec())));
         for format in [TableFormat::Json, TableFormat::Csv] {
             let folder = tempfile::tempdir().unwrap();
             let mut tables = Tables::new(folder.path(), folder.path(), format, 36, None);

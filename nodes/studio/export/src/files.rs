@@ -1,8 +1,7 @@
 //! The files of one packing, or of a run, by format.
 
-use crate::columns::Piece;
-use crate::vtp::{pvd, vtp};
-use crate::{csv, extended_xyz, lammps_data, lammps_dump, lammps_dump::UNITS, lammps_local, sidecar};
+use crate::lammps_dump::{UNITS, lammps_dump, lammps_local};
+use crate::{csv, extended_xyz, lammps_data, sidecar, vtp};
 use clap::ValueEnum;
 use grainlab_core::Packing;
 
@@ -69,8 +68,8 @@ impl Exporter {
             ExportFormat::LammpsData => vec![part(format!("packing_{n}.data"), lammps_data(packing))],
             ExportFormat::Xyz => vec![part("packings.xyz".into(), extended_xyz(packing))],
             ExportFormat::Vtk => vec![
-                part(format!("grains_{n}.vtp"), vtp(packing, &Piece::grains(packing))),
-                part(format!("contacts_{n}.vtp"), vtp(packing, &Piece::contacts(packing))),
+                part(format!("grains_{n}.vtp"), vtp::grains(packing)),
+                part(format!("contacts_{n}.vtp"), vtp::contacts(packing)),
             ],
         };
         self.states.push((packing.time, parts.iter().map(|p| p.name.clone()).collect()));
@@ -84,7 +83,7 @@ impl Exporter {
         }
         let collection = |name: &str, k: usize| {
             let states = self.states.iter().map(|(time, files)| (*time, files[k].as_str()));
-            FilePart { name: name.to_owned(), content: pvd(states) }
+            FilePart { name: name.to_owned(), content: vtp::pvd(states) }
         };
         vec![collection("grains.pvd", 0), collection("contacts.pvd", 1)]
     }

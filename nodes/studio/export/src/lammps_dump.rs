@@ -1,4 +1,4 @@
-//! Writes LAMMPS dump text, which OVITO opens.
+//! Writes LAMMPS dumps as text: grains, which OVITO opens, and contacts (`dump local`).
 
 use std::fmt::Write as _;
 
@@ -21,6 +21,15 @@ pub(crate) fn ids(packing: &Packing) -> Vec<u64> {
     packing.ids.iter().map(|id| u64::from(*id) + first).collect()
 }
 
+/// The number of contacts of each grain.
+pub(crate) fn coordination(packing: &Packing) -> Vec<u32> {
+    let mut contacts = vec![0; packing.grains()];
+    for grain in packing.contacts.iter().flat_map(|c| [c.i, c.j]) {
+        contacts[grain as usize] += 1;
+    }
+    contacts
+}
+
 /// One frame of a LAMMPS dump: id, type, radius, mass, unwrapped positions, velocities, angular velocities,
 /// and the number of contacts as `c_contacts`. Frames can be concatenated, after one `ITEM: UNITS`. Contact forces are not
 /// part of the format. Ids are those of the packing, or one more if it has an id 0, as in [`lammps_data`](crate::lammps_data()). A cell that is not in the restricted triclinic form of LAMMPS is written as a general one, by its edge
@@ -28,13 +37,8 @@ pub(crate) fn ids(packing: &Packing) -> Vec<u64> {
 pub fn lammps_dump(packing: &Packing) -> String {
     let mut text = format!("ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\n", packing.step, packing.grains());
     bounds(&mut text, packing);
-    let mut contacts = vec![0u32; packing.grains()];
-    for c in &packing.contacts {
-        contacts[c.i as usize] += 1;
-        contacts[c.j as usize] += 1;
-    }
     text.push_str("ITEM: ATOMS id type radius mass xu yu zu vx vy vz omegax omegay omegaz c_contacts\n");
-    for (k, (contacts, id)) in contacts.into_iter().zip(ids(packing)).enumerate() {
+    for (k, (contacts, id)) in coordination(packing).into_iter().zip(ids(packing)).enumerate() {
         let radius = packing.radii[k];
         let _ = write!(text, "{id} 1 {radius:e} {:e}", packing.material.sphere_mass(radius));
         let vectors: [&Vec3; 3] = [&packing.positions[k], &packing.velocities[k], &packing.spins[k]];
@@ -72,4 +76,23 @@ fn bounds(text: &mut String, packing: &Packing) {
             }
         }
     }
+}
+
+/// One frame of a LAMMPS `dump local`: ids of the two grains, normal force and tangential force on the first one, N, under the names that
+/// `ImportOptions::contact_forces` expects. Ids are those of [`lammps_dump`].
+pub fn lammps_local(packing: &Packing) -> String {
+    let mut text = format!(
+        "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ENTRIES\n{}\nITEM: ENTRIES patom1 patom2 fx fy fz p1 p2 p3\n",
+        packing.step,
+        packing.contacts.len()
+    );
+    let ids = ids(packing);
+    for c in &packing.contacts {
+        // The normal points away from the first grain, and the force pushes it back.
+        let (f, t) = (-c.normal_force * c.normal, &c.tangential_force);
+        let (i, j) = (ids[c.i as usize], ids[c.j as usize]);
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{i} {j} {:e} {:e} {:e} {:e} {:e} {:e}", f.x, f.y, f.z, t.x, t.y, t.z);
+    }
+    text
 }

@@ -85,6 +85,13 @@ impl<'a> Channels<'a> {
 /// The error that a topic has other fields in another recording.
 fn differs(kept: &ChannelInfo, from: &Path, other: &ChannelInfo, path: &Path) -> Failure {
     let (topic, from, path) = (&other.topic, from.display(), path.display());
+    if kept.ros_type == other.ros_type && kept.is_without_definition() != other.is_without_definition() {
+        let (channel, path) = if kept.is_without_definition() { (kept, from) } else { (other, path) };
+        return Failure::usage(format!(
+            "{topic} in {path}: {}; or leave the topic out with --exclude",
+            channel.advice()
+        ));
+    }
     if let Some((what, kept, other)) = kept.differs_as(other).filter(|(what, ..)| *what != "type") {
         return Failure::usage(format!(
             "{topic}: its {what} is {kept} in {from} and {other} in {path}: leave the topic out with --exclude, or merge the \

@@ -80,13 +80,7 @@ impl Output {
 
     /// Declares the next channel.
     pub(super) fn declare(&mut self, channel: &ChannelInfo) -> Result<(), Failure> {
-        let id = self.with("declare a topic", |mcap| {
-            let schema = match channel.has_schema() {
-                true => mcap.add_schema(&channel.ros_type, &channel.schema_encoding, &channel.schema)?,
-                false => 0,
-            };
-            mcap.add_channel(schema, &channel.topic, &channel.message_encoding, &channel.metadata)
-        })?;
+        let id = self.with("declare a topic", |mcap| channel.declare(mcap))?;
         self.channels.push((id, channel.topic.clone()));
         self.counts.push(0);
         let spec = TopicSpec::of_channel(channel);

@@ -6,12 +6,10 @@ use grainlab_core::contact_search::{self, SearchError};
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 use grainlab_msgs::boundary::packing_header;
 
-use super::contact_lists;
-use super::error::ImportError;
+use super::contact_lists::{self, ListedContact, ListedForce};
+use super::error::{ImportError, Setting};
 use super::imported::Imported;
-use super::listed_contact::{ListedContact, ListedForce};
 use super::rounding::{ALL_DIGITS, Printed, Rounding};
-use super::setting::Setting;
 use super::settings::{ImportOptions, Properties};
 use super::text::Line;
 
@@ -248,8 +246,13 @@ fn listed_contacts(
     let is_reversed = |(c, pair): &(&ListedContact, &Pair)| pair.is_reversed(packing, c);
     let mut reversed = listed.iter().zip(&pairs).filter(is_reversed);
     if let Some((first, _)) = reversed.next() {
-        let (line, ids) = (first.line, first.ids);
-        return Err(ImportError::reversed_normals(line, ids, 1 + reversed.count(), listed.len()));
+        let (line, (i, j), count) = (first.line, first.ids, 1 + reversed.count());
+        let what = format!(
+            "the normals of {count} of {} contacts point the wrong way, the first of grains {i} and {j}: the angle to the direction \
+             that positions give is pi; reverse the signs of these normals",
+            listed.len()
+        );
+        return Err(ImportError::line(line, what));
     }
     listed.iter().zip(&pairs).map(|(c, pair)| listed_contact(packing, pair, c, rounding)).collect()
 }

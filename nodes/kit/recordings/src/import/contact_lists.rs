@@ -1,10 +1,35 @@
-//! Checks of contacts listed in a file: each contact once, with forces of the stated contact law.
+//! Contacts listed in a file, and their checks: each contact once, with forces of the stated contact law.
 
-use grainlab_core::{Contact, OTHER_LAW, Packing};
+use grainlab_core::{Contact, OTHER_LAW, Packing, Vec3};
 
 use super::error::ImportError;
-use super::listed_contact::ListedContact;
 use super::rounding::{ALL_DIGITS, Rounding};
+
+/// A contact as a file lists it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ListedContact {
+    pub(super) line: usize,
+    /// Ids of the two grains, in the file's order.
+    pub(super) ids: (u32, u32),
+    /// Unit vector from the second to the first grain, if the file has it.
+    pub(super) normal: Option<Vec3>,
+    /// m, if the file has it.
+    pub(super) overlap: Option<f64>,
+    /// On the first grain, N.
+    pub(super) force: ListedForce,
+    /// Elastic rolling force, N; the same seen from either grain.
+    pub(super) rolling: Vec3,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) enum ListedForce {
+    /// Along the normal, and across it.
+    Split {
+        normal: f64,
+        tangential: Vec3,
+    },
+    Total(Vec3),
+}
 
 /// Forces of one contact, listed from both grains, are equal up to this share: six printed digits.
 const SAME_FORCE: f64 = 1e-5;
@@ -134,14 +159,14 @@ pub(super) fn leave_out_apart(
         ),
         None => "positions and forces are not of the same state".to_owned(),
     };
-    Err(ImportError::Apart {
-        count: apart.len(),
-        contacts,
-        ids: [strongest.i, strongest.j].map(|g| packing.ids[g as usize]),
-        force: strongest.normal_force,
-        gap: -strongest.overlap,
-        cause,
-    })
+    let [i, j] = [strongest.i, strongest.j].map(|g| packing.ids[g as usize]);
+    Err(ImportError::Invalid(format!(
+        "{} of {contacts} contacts carry a force although their grains do not overlap by position; the strongest, of grains {i} \
+         and {j}, has {:.3e} N across a gap of {:.1e} m: {cause}",
+        apart.len(),
+        strongest.normal_force,
+        -strongest.overlap
+    )))
 }
 
 /// Returns the unit other than m in which the lengths of `packing` give its normal forces, which are `ratio` times the law.
@@ -164,19 +189,49 @@ fn unit_of_lengths(packing: &Packing, ratio: f64) -> Option<&'static str> {
 pub(super) fn check_forces(packing: &Packing, law_is_stated: bool) -> Result<(), ImportError> {
     let is_zero = |c: &Contact| c.normal_force == 0.0 && c.tangential_force.norm() == 0.0;
     if !packing.contacts.is_empty() && packing.contacts.iter().all(is_zero) {
-        return Err(ImportError::NoForces { overlapping: packing.contacts.len() });
+        return Err(ImportError::no_forces(packing.contacts.len()));
     }
     let Some(found) = packing.compare_with_law() else { return Ok(()) };
     let law = packing.law.name();
     if let Some(pulling) = found.reversed {
-        return Err(ImportError::Reversed { pulling, contacts: packing.contacts.len(), law });
+        return Err(ImportError::Invalid(format!(
+            "{pulling} of {} contacts pull although the grains overlap, and {law} contacts only press: the forces have the wrong \
+             sign, because they act on the second grain of each contact. Reverse the signs of all forces; for a LAMMPS dump local, \
+             exchange the columns of the two ids by --contact-columns (contact_columns in [start] of a scene)",
+            packing.contacts.len()
+        )));
     }
     let is_far = !(1.0 / OTHER_FORCES..=OTHER_FORCES).contains(&found.ratio);
     let is_other = found.linear_stiffness.is_some() && packing.law_difference() > OTHER_LAW;
     if !law_is_stated && (is_far || is_other) {
-        let (ratio, linear_stiffness) = (found.ratio, found.linear_stiffness);
-        let lengths = unit_of_lengths(packing, ratio).filter(|_| is_far);
-        return Err(ImportError::OtherLaw { law, ratio, linear_stiffness, lengths });
+        let lengths = unit_of_lengths(packing, found.ratio).filter(|_| is_far);
+        return Err(ImportError::Invalid(other_law(law, found.ratio, found.linear_stiffness, lengths)));
     }
     Ok(())
+}
+
+/// Says that the forces are `ratio` times those of the assumed law, and which law (linear springs) or unit of length explains them.
+fn other_law(law: &str, ratio: f64, linear_stiffness: Option<f64>, lengths: Option<&str>) -> String {
+    // Factors of units need as many digits before the point as after it.
+    let times = if (0.01..1e4).contains(&ratio) { format!("{ratio:.3}") } else { format!("{ratio:.2e}") };
+    let what = format!(
+        "the file states no contact law, and its normal forces are {times} times those of {law} contacts with these overlaps and \
+         this material"
+    );
+    if let Some(unit) = lengths {
+        return format!(
+            "{what}. They are those of {law} contacts if its lengths are in {unit}: convert positions, radii, overlaps and cell to m"
+        );
+    }
+    let elsewhere = "in a scene, give the law under [contact]; beside a CSV, as contact_law in its JSON";
+    match linear_stiffness {
+        Some(k_n) => format!(
+            "{what}. They are proportional to the overlap, as those of linear springs with k_n = {k_n:.4e} N/m: give \
+             --contact-law linear:{k_n:.4e},RATIO, where RATIO is k_t/k_n ({elsewhere})"
+        ),
+        None => format!(
+            "{what}: they belong to another contact law, or the shear modulus is not that of the grains. Give --contact-law, or \
+             --shear-modulus; --contact-law {law} measures the packing as it is ({elsewhere})"
+        ),
+    }
 }

@@ -18,9 +18,9 @@
 use grainlab_core::Vec3;
 
 use super::assemble::{self, GrainTable};
+use super::contact_lists::{ListedContact, ListedForce};
 use super::error::ImportError;
 use super::imported::Imported;
-use super::listed_contact::{ListedContact, ListedForce};
 use super::settings::ImportOptions;
 use super::text::{Line, lines, shown};
 

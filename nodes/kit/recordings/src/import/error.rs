@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use grainlab_console::Failure;
 use grainlab_core::PackingError;
 
-use super::setting::Setting;
 use grainlab_core::contact_search::SearchError;
 
 /// Errors of an import.
@@ -33,61 +32,6 @@ pub enum ImportError {
     /// Contacts cannot be found; grains are named by id.
     #[error(transparent)]
     Contacts(#[from] SearchError),
-    /// All normal forces pull.
-    #[error(
-        "{pulling} of {contacts} contacts pull although the grains overlap, and {law} contacts only press: the forces have the wrong \
-         sign, because they act on the second grain of each contact. Reverse the signs of all forces; for a LAMMPS dump local, \
-         exchange the columns of the two ids by --contact-columns (contact_columns in [start] of a scene)"
-    )]
-    Reversed {
-        /// Number of contacts that pull.
-        pulling: usize,
-        /// Number of contacts.
-        contacts: usize,
-        /// Name of the contact law.
-        law: &'static str,
-    },
-    /// The normal forces contradict the contact law, which the file does not state.
-    #[error("{}", other_law(law, *ratio, *linear_stiffness, *lengths))]
-    OtherLaw {
-        /// Name of the contact law that was assumed.
-        law: &'static str,
-        /// Sum of the normal forces over the sum of the forces of the law.
-        ratio: f64,
-        /// k_n, N/m, if the forces belong to linear springs.
-        linear_stiffness: Option<f64>,
-        /// Unit of the lengths, other than m, in which the law gives the forces.
-        lengths: Option<&'static str>,
-    },
-    /// No contact carries a force.
-    #[error(
-        "no contact carries a force, although {overlapping} pairs of grains overlap: the forces were written before they were computed \
-         (in LAMMPS, dump after a run), or are of another state. Without forces in the file, they follow from the overlaps by the \
-         contact law"
-    )]
-    NoForces {
-        /// Number of pairs of grains that overlap.
-        overlapping: usize,
-    },
-    /// Contacts carry a force although their grains do not overlap by position.
-    #[error(
-        "{count} of {contacts} contacts carry a force although their grains do not overlap by position; the strongest, of grains {} \
-         and {}, has {force:.3e} N across a gap of {gap:.1e} m: {cause}", ids[0], ids[1]
-    )]
-    Apart {
-        /// Number of such contacts.
-        count: usize,
-        /// Number of contacts.
-        contacts: usize,
-        /// Ids of the grains of the contact with the largest force.
-        ids: [u32; 2],
-        /// Its normal force, N.
-        force: f64,
-        /// Its gap, m.
-        gap: f64,
-        /// Why, and what to do.
-        cause: String,
-    },
     /// The packing is invalid.
     #[error(transparent)]
     Packing(#[from] PackingError),
@@ -144,16 +88,13 @@ impl ImportError {
         Self::line(line, format_args!("grain {id} occurs twice, before in line {before}"))
     }
 
-    /// Contacts whose normals are opposite to the directions between the grains, the first of these two.
-    pub(super) fn reversed_normals(line: usize, ids: (u32, u32), reversed: usize, contacts: usize) -> Self {
-        let (i, j) = ids;
-        Self::line(
-            line,
-            format_args!(
-                "the normals of {reversed} of {contacts} contacts point the wrong way, the first of grains {i} and {j}: the angle to \
-                 the direction that positions give is pi; reverse the signs of these normals"
-            ),
-        )
+    /// No contact carries a force.
+    pub(super) fn no_forces(overlapping: usize) -> Self {
+        Self::Invalid(format!(
+            "no contact carries a force, although {overlapping} pairs of grains overlap: the forces were written before they were \
+             computed (in LAMMPS, dump after a run), or are of another state. Without forces in the file, they follow from the \
+             overlaps by the contact law"
+        ))
     }
 
     /// Another number of grains or contacts than is stated.
@@ -167,31 +108,6 @@ impl ImportError {
     }
 }
 
-fn other_law(law: &str, ratio: f64, linear_stiffness: Option<f64>, lengths: Option<&str>) -> String {
-    // Factors of units need as many digits before the point as after it.
-    let times = if (0.01..1e4).contains(&ratio) { format!("{ratio:.3}") } else { format!("{ratio:.2e}") };
-    let what = format!(
-        "the file states no contact law, and its normal forces are {times} times those of {law} contacts with these overlaps and \
-         this material"
-    );
-    if let Some(unit) = lengths {
-        return format!(
-            "{what}. They are those of {law} contacts if its lengths are in {unit}: convert positions, radii, overlaps and cell to m"
-        );
-    }
-    let elsewhere = "in a scene, give the law under [contact]; beside a CSV, as contact_law in its JSON";
-    match linear_stiffness {
-        Some(k_n) => format!(
-            "{what}. They are proportional to the overlap, as those of linear springs with k_n = {k_n:.4e} N/m: give \
-             --contact-law linear:{k_n:.4e},RATIO, where RATIO is k_t/k_n ({elsewhere})"
-        ),
-        None => format!(
-            "{what}: they belong to another contact law, or the shear modulus is not that of the grains. Give --contact-law, or \
-             --shear-modulus; --contact-law {law} measures the packing as it is ({elsewhere})"
-        ),
-    }
-}
-
 /// Most quantities that a packing may lack; a file that lacks more is something else.
 const OF_A_PACKING: usize = 3;
 
@@ -200,10 +116,37 @@ fn missing(settings: &[Setting]) -> String {
         0..=OF_A_PACKING => "the file lacks",
         _ => "this does not look like a file of a packing: it lacks",
     };
-    format!("{about} {}", list(settings))
+    let names = settings.iter().map(|s| s.described()).map(|(what, flag)| format!("{what} (give {flag})"));
+    format!("{about} {}", names.collect::<Vec<_>>().join(", "))
 }
 
-fn list(settings: &[Setting]) -> String {
-    let names = settings.iter().map(|s| s.described()).map(|(what, flag)| format!("{what} (give {flag})"));
-    names.collect::<Vec<_>>().join(", ")
+/// A required property of a packing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Setting {
+    /// The periodic cell.
+    Cell,
+    /// Shear modulus of the grain.
+    ShearModulus,
+    /// Poisson ratio of the grain.
+    PoissonRatio,
+    /// Density of the grain.
+    Density,
+    /// Coefficient of friction.
+    Friction,
+    /// Radius of the grains.
+    Radius,
+}
+
+impl Setting {
+    /// Name in messages to the user, and flag on the command line with its unit.
+    pub fn described(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Cell => ("the cell", "--cell LX,LY,LZ or nine numbers row by row, m"),
+            Self::ShearModulus => ("the grain's shear modulus", "--shear-modulus PA"),
+            Self::PoissonRatio => ("the grain's Poisson ratio", "--poisson NU"),
+            Self::Density => ("the grain's density", "--density KG_PER_M3"),
+            Self::Friction => ("the friction coefficient", "--friction MU"),
+            Self::Radius => ("the radius of the grains", "--radius M"),
+        }
+    }
 }

@@ -11,7 +11,7 @@ use grainlab_core::{Mat3, Vec3};
 use super::assemble::{GrainTable, Moment};
 use super::error::ImportError;
 use super::imported::Imported;
-use super::lammps_cell::lammps_cell;
+use super::lammps_items::lammps_cell;
 use super::lammps_local;
 use super::settings::{ImportOptions, Known};
 use super::stated;

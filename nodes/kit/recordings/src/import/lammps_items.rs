@@ -1,6 +1,8 @@
-//! Frames of a text dump of LAMMPS, which are sections of `ITEM:`.
+//! Frames of a text dump of LAMMPS, which are sections of `ITEM:`, and the cell of dump and data files.
 
 use std::iter::Peekable;
+
+use grainlab_core::Mat3;
 
 use super::error::ImportError;
 use super::stated;
@@ -66,4 +68,14 @@ pub(super) fn next_frame<'a>(
         }
     }
     Ok(None)
+}
+
+/// The cell of LAMMPS with edge vectors a = (lx, 0, 0), b = (xy, ly, 0), c = (xz, yz, lz), m.
+pub(super) fn lammps_cell(lengths: [f64; 3], [xy, xz, yz]: [f64; 3]) -> Mat3 {
+    let [lx, ly, lz] = lengths;
+    Mat3::new(
+        lx, xy, xz, //
+        0.0, ly, yz, //
+        0.0, 0.0, lz,
+    )
 }

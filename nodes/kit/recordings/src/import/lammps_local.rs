@@ -17,11 +17,11 @@
 //! grains is read.
 
 use super::assemble::{self, GrainTable, Moment};
+use super::contact_lists::{ListedContact, ListedForce};
 use super::error::ImportError;
 use super::imported::Imported;
 use super::lammps_columns::{self, ForceRow};
 use super::lammps_items::{Frame, full_lines, next_frame};
-use super::listed_contact::{ListedContact, ListedForce};
 use super::settings::{ImportOptions, Properties};
 use grainlab_core::{Cell, Vec3, contact_search};
 
@@ -141,7 +141,7 @@ impl Local<'_> {
             let blur = imported.rounding.map_or(0.0, |rounding| rounding.of_overlap());
             let overlapping =
                 contact_search::of_packing(packing)?.iter().filter(|c| c.overlap > blur).count();
-            return if overlapping > 0 { Err(ImportError::NoForces { overlapping }) } else { Ok(()) };
+            return if overlapping > 0 { Err(ImportError::no_forces(overlapping)) } else { Ok(()) };
         }
         let central =
             |c: &grainlab_core::Contact| c.tangential_force.norm() <= CENTRAL * c.normal_force.abs();

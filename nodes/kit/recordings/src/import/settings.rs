@@ -3,8 +3,7 @@
 use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Mat3, Material};
 
-use super::error::ImportError;
-use super::setting::Setting;
+use super::error::{ImportError, Setting};
 
 /// Values given by the user: each one replaces what the file or its sidecar says, which is noted where it says something else.
 #[derive(Clone, Debug, Default, PartialEq)]

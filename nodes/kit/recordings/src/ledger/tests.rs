@@ -9,15 +9,25 @@ fn only(ledger: &Ledger) -> TopicTally {
     tallies.into_iter().next().unwrap()
 }
 
+/// Published, recorded and lost messages of the only topic.
+fn counts(ledger: &Ledger) -> (u64, u64, u64) {
+    let t = only(ledger);
+    (t.published, t.recorded, t.lost)
+}
+
+/// A ledger of messages with these numbers; `/image` counts from its first message.
+fn entered(topic: &str, numbers: &[i64]) -> Ledger {
+    let mut ledger = Ledger::default();
+    ledger.count_from_first("/image");
+    numbers.iter().for_each(|n| assert!(ledger.enter(topic, A, *n)));
+    ledger
+}
+
 #[test]
 fn a_gap_in_the_middle_is_a_loss_and_a_late_arrival_heals_it() {
-    let mut ledger = Ledger::default();
-    for n in [1, 2, 6, 7] {
-        assert!(ledger.enter("/stress", A, n));
-    }
-    let t = only(&ledger);
-    assert_eq!((t.published, t.recorded, t.lost), (7, 4, 3));
-    assert_eq!(t.writers[0].gaps, [(3, 5)]);
+    let mut ledger = entered("/stress", &[1, 2, 6, 7]);
+    assert_eq!(counts(&ledger), (7, 4, 3));
+    assert_eq!(only(&ledger).writers[0].gaps, [(3, 5)]);
     assert!(ledger.enter("/stress", A, 4));
     assert_eq!(only(&ledger).writers[0].gaps, [(3, 3), (5, 5)]);
     assert!(ledger.enter("/stress", A, 3) && ledger.enter("/stress", A, 5));
@@ -28,35 +38,29 @@ fn a_gap_in_the_middle_is_a_loss_and_a_late_arrival_heals_it() {
 
 #[test]
 fn a_message_that_arrives_twice_is_counted_apart_and_not_as_published() {
-    let mut ledger = Ledger::default();
-    assert!(ledger.enter("/stress", A, 1) && ledger.enter("/stress", A, 2));
-    assert!(
-        ledger.holds("/stress", &A, 1) && !ledger.holds("/stress", &A, 3) && !ledger.holds("/stress", &B, 1)
-    );
+    let mut ledger = entered("/stress", &[1, 2]);
+    let held = [(A, 1), (A, 3), (B, 1)].map(|(writer, n)| ledger.holds("/stress", &writer, n));
+    assert_eq!(held, [true, false, false]);
     assert!(!ledger.enter("/stress", A, 1) && !ledger.enter("/stress", A, 2));
     let t = only(&ledger);
     assert_eq!((t.published, t.recorded, t.lost, t.repeated, t.redelivered), (2, 2, 0, 0, 2));
     // One that is left out was published, and is not lost.
     ledger.leave_out("/stress", A, 3);
+    assert_eq!(counts(&ledger), (3, 2, 0));
     let t = only(&ledger);
-    assert_eq!((t.published, t.recorded, t.lost), (3, 2, 0));
     let both = &merge(vec![vec![t.clone()], vec![t]])[0];
     assert_eq!((both.published, both.recorded, both.lost), (3, 2, 0));
 }
 
 #[test]
 fn what_a_writer_sent_before_and_after_is_known_from_its_report_and_its_numbers() {
-    let mut ledger = Ledger::default();
     // Two messages before the recorder joined, one lost at the end.
-    for n in [3, 4, 5] {
-        ledger.enter("/packing", A, n);
-    }
+    let mut ledger = entered("/packing", &[3, 4, 5]);
     assert_eq!(only(&ledger).lost, 2);
     ledger.report("/packing", A, 6);
-    assert_eq!(ledger.outstanding(), 3);
-    let t = only(&ledger);
-    assert_eq!((t.published, t.recorded, t.lost), (6, 3, 3));
-    assert_eq!((t.writers[0].first, t.writers[0].last, t.writers[0].reported), (Some(3), Some(5), Some(6)));
+    assert_eq!((ledger.outstanding(), counts(&ledger)), (3, (6, 3, 3)));
+    let writer = &only(&ledger).writers[0];
+    assert_eq!((writer.first, writer.last, writer.reported), (Some(3), Some(5), Some(6)));
     // A late report with a smaller number changes nothing.
     ledger.report("/packing", A, 2);
     assert_eq!(only(&ledger).published, 6);
@@ -64,9 +68,8 @@ fn what_a_writer_sent_before_and_after_is_known_from_its_report_and_its_numbers(
 
 #[test]
 fn writers_are_accounted_apart_and_a_silent_topic_appears() {
-    let mut ledger = Ledger::default();
+    let mut ledger = entered("/stress", &[1]);
     ledger.expect("/moduli");
-    ledger.enter("/stress", A, 1);
     ledger.enter("/stress", B, 1);
     ledger.report("/stress", B, 1);
     ledger.name(B, "/dem_simulator");
@@ -81,54 +84,39 @@ fn writers_are_accounted_apart_and_a_silent_topic_appears() {
 fn all_messages_of_a_writer_without_received_ones_are_lost() {
     let mut ledger = Ledger::default();
     ledger.report("/stress", A, 40);
-    let t = only(&ledger);
-    assert_eq!((t.published, t.recorded, t.lost), (40, 0, 40));
-    assert_eq!(t.writers[0].last, None);
+    assert_eq!((counts(&ledger), only(&ledger).writers[0].last), ((40, 0, 40), None));
 }
 
 #[test]
 fn what_a_writer_announced_and_never_sent_is_lost() {
-    let mut ledger = Ledger::default();
-    ledger.count_from_first("/image");
-    for n in [3, 4] {
-        ledger.enter("/image", A, n);
-    }
+    let mut ledger = entered("/image", &[3, 4]);
     // A late recorder: messages that were offered and replaced before the first one came are not counted.
     ledger.announce("/image", A, Some(1), 20);
-    assert_eq!(ledger.outstanding(), 16);
-    let t = only(&ledger);
-    assert_eq!((t.published, t.recorded, t.lost), (18, 2, 16));
+    assert_eq!((ledger.outstanding(), counts(&ledger)), (16, (18, 2, 16)));
     ledger.announce("/image", A, Some(1), 3);
     assert_eq!(only(&ledger).published, 18);
 }
 
 #[test]
 fn a_writer_of_which_nothing_arrived_owes_what_it_offered_and_a_volatile_one_nothing() {
-    let mut ledger = Ledger::default();
-    ledger.count_from_first("/image");
+    let mut ledger = entered("/image", &[]);
     ledger.announce("/image", A, None, 20);
     ledger.announce("/image", B, Some(1), 0);
     assert!(ledger.tallies().is_empty());
     ledger.announce("/image", A, Some(18), 20);
-    let t = only(&ledger);
-    assert_eq!((t.published, t.recorded, t.lost, ledger.outstanding()), (3, 0, 3, 3));
+    assert_eq!((ledger.outstanding(), counts(&ledger)), (3, (3, 0, 3)));
     // Once a message arrives, the counts begin with it.
     ledger.enter("/image", A, 19);
-    let t = only(&ledger);
-    assert_eq!((t.published, t.recorded, t.lost), (2, 1, 1));
+    assert_eq!(counts(&ledger), (2, 1, 1));
 }
 
 #[test]
 fn messages_that_cannot_be_received_are_lost_before_between_and_after_others() {
-    let mut ledger = Ledger::default();
-    ledger.count_from_first("/image");
-    for n in [6, 8] {
-        ledger.enter("/image", A, n);
-    }
+    let mut ledger = entered("/image", &[6, 8]);
     ledger.fail("/image", A, 5, 9);
     ledger.fail("/image", B, 1, 1);
+    assert_eq!(counts(&ledger), (6, 2, 4));
     let t = only(&ledger);
-    assert_eq!((t.published, t.recorded, t.lost), (6, 2, 4));
     assert_eq!(t.writers[0].gaps, [(5, 5), (7, 7)]);
     assert_eq!(ledger.outstanding(), 0, "nobody waits for them");
     ledger.announce("/image", A, None, 11);

@@ -20,29 +20,33 @@ pub(super) struct Block {
     pub(super) is_chunk: bool,
 }
 
+impl Block {
+    /// A block of these records without messages.
+    pub(super) fn empty(records: &RawRecord<'_>, is_chunk: bool) -> Self {
+        let (offset, end_offset, channels) = (records.offset, records.end(), Some(BTreeSet::new()));
+        Self { offset, end_offset, start: u64::MAX, end: 0, channels, is_chunk }
+    }
+
+    /// Adds a message.
+    pub(super) fn include(&mut self, header: &MessageHeader) {
+        (self.start, self.end) = (self.start.min(header.log_time), self.end.max(header.log_time));
+        self.channels.get_or_insert_default().insert(header.channel_id);
+    }
+}
+
 /// Bytes of messages outside chunks that are one block.
 const LOOSE_BLOCK: usize = 1 << 20;
 
 /// Adds a message outside chunks to the last block if it follows directly.
 pub(super) fn add_loose(blocks: &mut Vec<Block>, record: &RawRecord<'_>, header: &MessageHeader) {
-    let (time, channel) = (header.log_time, header.channel_id);
-    match blocks.last_mut() {
-        Some(last)
-            if !last.is_chunk
-                && last.end_offset == record.offset
-                && record.end() - last.offset <= LOOSE_BLOCK =>
-        {
-            last.end_offset = record.end();
-            (last.start, last.end) = (last.start.min(time), last.end.max(time));
-            last.channels.get_or_insert_default().insert(channel);
-        }
-        _ => blocks.push(Block {
-            offset: record.offset,
-            end_offset: record.end(),
-            start: time,
-            end: time,
-            channels: Some(BTreeSet::from([channel])),
-            is_chunk: false,
-        }),
+    let follows = |last: &Block| {
+        !last.is_chunk && last.end_offset == record.offset && record.end() - last.offset <= LOOSE_BLOCK
+    };
+    if !blocks.last().is_some_and(follows) {
+        blocks.push(Block::empty(record, false));
+    }
+    if let Some(last) = blocks.last_mut() {
+        last.end_offset = record.end();
+        last.include(header);
     }
 }

@@ -1,7 +1,9 @@
 //! Topics of a recording.
 
 use grainlab_any_message::{Comparison, Schema};
+use mcap::McapError;
 use std::collections::BTreeMap;
+use std::io::{Seek, Write};
 
 use super::definition::StoredDefinition;
 
@@ -60,9 +62,15 @@ impl ChannelInfo {
         Some((name, word(mine), word(others)))
     }
 
-    /// Returns true if the channel has a schema, which may be empty.
-    pub(crate) fn has_schema(&self) -> bool {
-        !(self.ros_type.is_empty() && self.schema_encoding.is_empty() && self.schema.is_empty())
+    /// Declares the channel in another file; returns its id there. A schema may be empty.
+    pub(crate) fn declare<W: Write + Seek>(&self, mcap: &mut mcap::Writer<W>) -> Result<u16, McapError> {
+        let has_schema =
+            !(self.ros_type.is_empty() && self.schema_encoding.is_empty() && self.schema.is_empty());
+        let schema = match has_schema {
+            true => mcap.add_schema(&self.ros_type, &self.schema_encoding, &self.schema)?,
+            false => 0,
+        };
+        mcap.add_channel(schema, &self.topic, &self.message_encoding, &self.metadata)
     }
 
     /// True for messages in CDR whose definition is not in the recording.

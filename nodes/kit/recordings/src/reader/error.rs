@@ -41,6 +41,13 @@ pub struct Warning {
     pub detail: String,
 }
 
+impl Warning {
+    /// A warning of a whole file.
+    pub(super) fn of_file(path: PathBuf, kind: WarningKind, detail: impl Into<String>) -> Self {
+        Self { path, offset: 0, kind, detail: detail.into() }
+    }
+}
+
 /// Kinds of [`Warning`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -138,7 +138,7 @@ pub(super) fn of_recording(
         } else {
             let outside = if is_inside { "" } else { ", outside of its directory, which is not read" };
             let detail = format!("metadata.yaml names it{outside}");
-            warnings.insert(Warning { path: file, offset: 0, kind: WarningKind::MissingFile, detail });
+            warnings.insert(Warning::of_file(file, WarningKind::MissingFile, detail));
         }
     }
     // Without a valid metadata.yaml (the recorder was killed): the existing files.
@@ -154,8 +154,8 @@ pub(super) fn of_recording(
             files.push(file);
         } else if part(&file).is_some_and(|(stem, _)| stems.contains(&stem)) {
             // The run continued after metadata.yaml was written, and its recorder was killed.
-            let detail = "metadata.yaml does not name it, but its name is that of a part".to_owned();
-            warnings.insert(Warning { path: file.clone(), offset: 0, kind: WarningKind::Unlisted, detail });
+            let detail = "metadata.yaml does not name it, but its name is that of a part";
+            warnings.insert(Warning::of_file(file.clone(), WarningKind::Unlisted, detail));
             files.push(file);
         } else {
             others.push(file);
@@ -181,9 +181,8 @@ fn unread(mut others: Vec<PathBuf>, files: &[PathBuf]) -> impl Iterator<Item = W
         has_content && identity(file).is_some_and(|identity| !known.contains(&identity))
     });
     others.into_iter().map(|path| {
-        let detail = "metadata.yaml does not name it, and its name is not that of a part. Move it to another directory, and read it there"
-            .to_owned();
-        Warning { path, offset: 0, kind: WarningKind::Unread, detail }
+        let detail = "metadata.yaml does not name it, and its name is not that of a part. Move it to another directory, and read it there";
+        Warning::of_file(path, WarningKind::Unread, detail)
     })
 }
 
@@ -203,8 +202,7 @@ fn read_once(files: &mut Vec<PathBuf>, warnings: &mut BTreeSet<Warning>) {
                     true => "metadata.yaml names it twice; it is read once".to_owned(),
                     false => format!("it is the same file as {}; it is read once", first.get().display()),
                 };
-                let kind = WarningKind::Inconsistent;
-                warnings.insert(Warning { path: file.clone(), offset: 0, kind, detail });
+                warnings.insert(Warning::of_file(file.clone(), WarningKind::Inconsistent, detail));
                 false
             }
         }
@@ -217,14 +215,8 @@ fn gaps(directory: &Path, files: &[PathBuf]) -> Vec<Warning> {
     let between = parts.windows(2).filter(|pair| pair[0].0 == pair[1].0);
     let missing =
         between.flat_map(|pair| (pair[0].1 + 1..pair[1].1).map(|n| format!("{}_{n}.mcap", pair[0].0)));
-    missing
-        .map(|name| Warning {
-            path: directory.join(name),
-            offset: 0,
-            kind: WarningKind::MissingFile,
-            detail: "the parts before and after it are there".to_owned(),
-        })
-        .collect()
+    let detail = "the parts before and after it are there";
+    missing.map(|name| Warning::of_file(directory.join(name), WarningKind::MissingFile, detail)).collect()
 }
 
 /// `<name>` and n of `<name>_<n>.mcap`: parts are numbered without leading zeros.

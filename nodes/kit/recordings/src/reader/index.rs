@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use grainlab_console::count;
 use mcap::MAGIC;
-use mcap::records::{ChunkIndex, MessageHeader, Record, op};
+use mcap::records::{ChunkIndex, Record, op};
 
 use super::block::{Block, add_loose};
 use super::channel::ChannelInfo;
@@ -41,22 +41,6 @@ pub(super) struct Index {
     pub(super) declared: Declarations,
     /// Bytes of the recording; others may follow in the file.
     pub(super) length: usize,
-}
-
-/// The messages of a chunk that is being read.
-#[derive(Default)]
-struct Inside {
-    /// First and last log time, ns since 1970.
-    bounds: Option<(u64, u64)>,
-    channels: BTreeSet<u16>,
-}
-
-impl Inside {
-    fn add(&mut self, header: &MessageHeader) {
-        let time = header.log_time;
-        self.bounds = Some(self.bounds.map_or((time, time), |(a, b)| (a.min(time), b.max(time))));
-        self.channels.insert(header.channel_id);
-    }
 }
 
 impl Index {
@@ -238,7 +222,7 @@ impl Index {
     }
 
     fn from_scan(path: &Path, bytes: &[u8], reason: Option<&str>, warnings: &mut BTreeSet<Warning>) -> Self {
-        let (mut index, mut inside) = (Self::default(), Inside::default());
+        let mut index = Self::default();
         let mut first_named = BTreeMap::new();
         // The first byte after the data, and whether more data was found there.
         let (mut summary, mut goes_on) = (bytes.len(), false);
@@ -259,8 +243,10 @@ impl Index {
                         goes_on = true;
                         warn((at, WarningKind::Inconsistent), AFTER_END.to_owned());
                     }
-                    let messages = chunk.map(|_| &mut inside);
-                    let misplaced = messages.is_some() && is_misplaced(record.opcode);
+                    let misplaced = chunk.is_some() && is_misplaced(record.opcode);
+                    if record.opcode == op::CHUNK && !misplaced {
+                        index.blocks.push(Block::empty(&record, true));
+                    }
                     match record.fit().and_then(|()| match record.opcode {
                         op::CHUNK | op::MESSAGE_INDEX => Ok(None),
                         _ => record.parse().map(Some),
@@ -279,17 +265,22 @@ impl Index {
                             if let Record::Channel(channel) = &parsed {
                                 first_named.entry(channel.id).or_insert(at);
                             }
-                            if let Err(detail) = index.add(&record, parsed, messages) {
+                            if let Err(detail) = index.add(&record, parsed, chunk.is_some()) {
                                 warn((at, WarningKind::Inconsistent), detail);
                             }
                         }
                     }
                 }
-                Walked::ChunkEnd(chunk) => index.close(&chunk, std::mem::take(&mut inside)),
+                Walked::ChunkEnd(chunk) => {
+                    if let Ok(Record::Chunk { header, .. }) = chunk.parse() {
+                        index.compressions.insert(header.compression);
+                    }
+                }
                 Walked::Unreadable(at, kind, detail) => warn((at, kind), detail),
             }
             true
         });
+        index.blocks.retain(|block| block.start <= block.end);
         if index.complete {
             // A declaration that was lost with a chunk may be repeated in the summary.
             let mut misplaced = None;
@@ -331,36 +322,20 @@ impl Index {
         index
     }
 
-    /// Adds a record outside chunks, or inside the open one.
-    fn add(
-        &mut self,
-        raw: &RawRecord<'_>,
-        record: Record<'_>,
-        inside: Option<&mut Inside>,
-    ) -> Result<(), String> {
+    /// Adds a record outside chunks, or inside the last one.
+    fn add(&mut self, raw: &RawRecord<'_>, record: Record<'_>, in_chunk: bool) -> Result<(), String> {
         match record {
             Record::Message { header, .. } => {
                 *self.counts.entry(header.channel_id).or_default() += 1;
-                match inside {
-                    Some(inside) => inside.add(&header),
+                match self.blocks.last_mut().filter(|_| in_chunk) {
+                    Some(chunk) => chunk.include(&header),
                     None => add_loose(&mut self.blocks, raw, &header),
                 }
             }
             Record::Schema { .. } | Record::Channel(_) => self.declared.add(record)?,
-            _ if inside.is_none() || is_unknown(raw.opcode) => self.stored.add(raw),
+            _ if !in_chunk || is_unknown(raw.opcode) => self.stored.add(raw),
             _ => {}
         }
         Ok(())
-    }
-
-    /// Adds a chunk after what is inside it.
-    fn close(&mut self, chunk: &RawRecord<'_>, Inside { bounds, channels }: Inside) {
-        if let Ok(Record::Chunk { header, .. }) = chunk.parse() {
-            self.compressions.insert(header.compression);
-        }
-        if let Some((start, end)) = bounds {
-            let (offset, end_offset, channels) = (chunk.offset, chunk.end(), Some(channels));
-            self.blocks.push(Block { offset, end_offset, start, end, channels, is_chunk: true });
-        }
     }
 }

@@ -1,41 +1,39 @@
 //! Checks lengths within a record against the available bytes: `mcap::parse_record` allocates the stated
 //! length of a text or a map before it reads it.
 
+use std::collections::BTreeMap;
+
 use mcap::records::op;
 
 /// A part of a record.
 enum Part {
     /// A fixed number of bytes.
     Fixed(usize),
-    /// A length of four bytes and that many bytes of text.
-    Text,
-    /// A length of four bytes and that many bytes of entries of fixed size.
-    Entries,
+    /// A length of four bytes and that many bytes.
+    Short,
+    /// A length of eight bytes and that many bytes.
+    Long,
     /// A length of four bytes and that many bytes of pairs of texts.
     Texts,
-    /// A length of four bytes and that many bytes of content.
-    Content,
-    /// A length of eight bytes and that many bytes of content.
-    LongContent,
 }
 
-use Part::{Content, Entries, Fixed, LongContent, Text, Texts};
+use Part::{Fixed, Long, Short, Texts};
 
 fn layout(opcode: u8) -> &'static [Part] {
     match opcode {
-        op::HEADER => &[Text, Text],
+        op::HEADER => &[Short, Short],
         op::FOOTER => &[Fixed(20)],
-        op::SCHEMA => &[Fixed(2), Text, Text, Content],
-        op::CHANNEL => &[Fixed(4), Text, Text, Texts],
+        op::SCHEMA => &[Fixed(2), Short, Short, Short],
+        op::CHANNEL => &[Fixed(4), Short, Short, Texts],
         op::MESSAGE => &[Fixed(22)],
-        op::CHUNK => &[Fixed(28), Text, LongContent],
-        op::MESSAGE_INDEX => &[Fixed(2), Entries],
-        op::CHUNK_INDEX => &[Fixed(32), Entries, Fixed(8), Text, Fixed(16)],
-        op::ATTACHMENT => &[Fixed(16), Text, Text, LongContent, Fixed(4)],
-        op::ATTACHMENT_INDEX => &[Fixed(40), Text, Text],
-        op::STATISTICS => &[Fixed(42), Entries],
-        op::METADATA => &[Text, Texts],
-        op::METADATA_INDEX => &[Fixed(16), Text],
+        op::CHUNK => &[Fixed(28), Short, Long],
+        op::MESSAGE_INDEX => &[Fixed(2), Short],
+        op::CHUNK_INDEX => &[Fixed(32), Short, Fixed(8), Short, Fixed(16)],
+        op::ATTACHMENT => &[Fixed(16), Short, Short, Long, Fixed(4)],
+        op::ATTACHMENT_INDEX => &[Fixed(40), Short, Short],
+        op::STATISTICS => &[Fixed(42), Short],
+        op::METADATA => &[Short, Texts],
+        op::METADATA_INDEX => &[Fixed(16), Short],
         op::SUMMARY_OFFSET => &[Fixed(17)],
         op::DATA_END => &[Fixed(4)],
         _ => &[],
@@ -49,26 +47,35 @@ pub(super) fn fit(opcode: u8, body: &[u8]) -> bool {
     layout(opcode).iter().all(|part| take(&mut rest, part).is_some())
 }
 
-/// Splits the body of a record at its map of texts: the bytes before the map, the bytes of its pairs, and the bytes after it.
-pub(super) fn texts(opcode: u8, body: &[u8]) -> Option<[&[u8]; 3]> {
-    let mut rest = body;
-    for part in layout(opcode) {
-        if matches!(part, Texts) {
-            let before = &body[..body.len() - rest.len()];
-            return Some([before, short(&mut rest)?, rest]);
+/// Returns the first key that the map of texts of a record has twice, and the record with the last value of each key.
+///
+/// MCAP leaves open which value counts. The last one counts here, as in the readers for Python and Go.
+pub(super) fn repeated_key(opcode: u8, body: &[u8]) -> Option<(&[u8], Vec<u8>)> {
+    let (mut rest, layout) = (body, layout(opcode));
+    let map = layout.iter().position(|part| matches!(part, Texts))?;
+    layout[..map].iter().try_for_each(|part| take(&mut rest, part))?;
+    let before = &body[..body.len() - rest.len()];
+    let (mut pairs, mut values, mut repeated) = (short(&mut rest)?, BTreeMap::new(), None);
+    while !pairs.is_empty() {
+        let (key, value) = (short(&mut pairs)?, short(&mut pairs)?);
+        if values.insert(key, value).is_some() {
+            repeated.get_or_insert(key);
         }
-        take(&mut rest, part)?;
     }
-    None
+    // The texts are parts of a record, which are shorter than its lengths allow.
+    let with_length = |text: &[u8]| [&(text.len() as u32).to_le_bytes()[..], text].concat();
+    let texts = values.into_iter().flat_map(|(key, value)| [key, value]);
+    let pairs: Vec<u8> = texts.flat_map(with_length).collect();
+    Some((repeated?, [before, &with_length(&pairs)].concat()))
 }
 
 fn take(rest: &mut &[u8], part: &Part) -> Option<()> {
     match part {
         Fixed(bytes) => *rest = rest.get(*bytes..)?,
-        Text | Entries | Content => {
+        Short => {
             short(rest)?;
         }
-        LongContent => {
+        Long => {
             let (length, behind) = rest.split_first_chunk::<8>()?;
             *rest = behind.get(usize::try_from(u64::from_le_bytes(*length)).ok()?..)?;
         }

@@ -9,7 +9,6 @@ use super::held::Held;
 use super::message::{Message, Payload};
 use super::recording::Recording;
 use super::records::{Records, is_misplaced, is_unknown, misplaced};
-use super::selection::Selection;
 use grainlab_console::{Failure, count};
 use mcap::records::{MessageHeader, op};
 use std::borrow::Cow;
@@ -17,6 +16,24 @@ use std::cell::RefCell;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
+
+/// Selects messages by topic and log time.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Selection {
+    /// Names of topics, with or without the leading slash; `None` for all.
+    pub topics: Option<Vec<String>>,
+    /// First log time, ns since 1970.
+    pub start: Option<u64>,
+    /// Log time before which to end, ns since 1970.
+    pub end: Option<u64>,
+}
+
+impl Selection {
+    /// All messages on these topics.
+    pub fn topics<S: Into<String>>(names: impl IntoIterator<Item = S>) -> Self {
+        Self { topics: Some(names.into_iter().map(Into::into).collect()), ..Self::default() }
+    }
+}
 
 /// Messages of a recording in order of log time.
 pub struct Messages<'r> {
@@ -57,21 +74,12 @@ impl Recording {
     /// # Errors
     /// If the topic does not exist.
     pub fn last(&self, topic: &str) -> Result<Option<Message>, Failure> {
-        Ok(self.some_before(topic, None, 1)?.pop())
+        let counts = BTreeMap::from([(self.channel(topic)?.topic.clone(), 1)]);
+        Ok(self.each_before(&counts, None).into_values().flatten().next())
     }
 
-    /// The last `count` messages on `topic` whose log time is below `time` (ns since 1970), or of all, in order of log time.
-    ///
-    /// # Errors
-    /// If the topic does not exist.
-    pub fn some_before(&self, topic: &str, time: Option<u64>, count: usize) -> Result<Vec<Message>, Failure> {
-        let topic = self.channel(topic)?.topic.clone();
-        let mut found = self.each_before(&BTreeMap::from([(topic.clone(), count)]), time);
-        Ok(found.remove(&topic).unwrap_or_default())
-    }
-
-    /// Returns for each topic its last messages, as many as `counts` states, as [`Recording::some_before`] does for one. No block is
-    /// read twice.
+    /// Returns for each topic its last messages whose log time is below `time` (ns since 1970), or of all, as many as `counts` states, in
+    /// order of log time. No block is read twice.
     pub(crate) fn each_before(
         &self,
         counts: &BTreeMap<String, usize>,

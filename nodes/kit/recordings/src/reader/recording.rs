@@ -3,9 +3,8 @@
 use super::channel::ChannelInfo;
 use super::definition::StoredDefinition;
 use super::error::{self, Warning, WarningKind, no_such_topic};
-use super::file::OpenFile;
+use super::file::{FileCount, OpenFile, StoredFile};
 use super::files::{self, BagInformation};
-use super::stored_file::{FileCount, StoredFile};
 use crate::definitions::Definitions;
 use crate::ledger::{TopicTally, merge};
 use crate::metadata_keys::{
@@ -42,8 +41,8 @@ impl Recording {
     pub fn open(path: &Path) -> Result<Self, Failure> {
         let mut warnings = BTreeSet::new();
         let bag = BagInformation::beside(path).unwrap_or_else(|fault| {
-            let (kind, detail) = (WarningKind::Inconsistent, format!("it cannot be read: {fault}"));
-            warnings.insert(Warning { path: path.join("metadata.yaml"), offset: 0, kind, detail });
+            let detail = format!("it cannot be read: {fault}");
+            warnings.insert(Warning::of_file(path.join("metadata.yaml"), WarningKind::Inconsistent, detail));
             None
         });
         let compressed = bag.as_ref().is_some_and(|bag| bag.is_by("message"));
@@ -72,8 +71,8 @@ impl Recording {
         for file in paths {
             // A power cut may leave a part without a byte; the others are read.
             if parts > 1 && is_empty(&file) {
-                let detail = "it is empty: what was recorded in it is lost".to_owned();
-                warnings.insert(Warning { path: file, offset: 0, kind: WarningKind::Truncated, detail });
+                let detail = "it is empty: what was recorded in it is lost";
+                warnings.insert(Warning::of_file(file, WarningKind::Truncated, detail));
                 continue;
             }
             files.push(OpenFile::map(&file, &mut warnings)?);
@@ -84,8 +83,7 @@ impl Recording {
         let found: u64 = files.iter().flat_map(|f| f.index.counts.values()).sum();
         let stated = bag.as_ref().filter(|_| path.is_dir()).and_then(|bag| bag.differs(found));
         if let Some(detail) = stated.filter(|_| warnings.iter().all(|w| w.kind == WarningKind::Unread)) {
-            let kind = WarningKind::Inconsistent;
-            warnings.insert(Warning { path: path.join("metadata.yaml"), offset: 0, kind, detail });
+            warnings.insert(Warning::of_file(path.join("metadata.yaml"), WarningKind::Inconsistent, detail));
         }
         let topics = first_channels(&files);
         let unknown = files.iter().flat_map(|f| f.index.stored.unknown.iter().copied()).collect();

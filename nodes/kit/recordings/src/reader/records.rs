@@ -4,7 +4,6 @@ use mcap::records::{MessageHeader, Record, op};
 use std::ops::Range;
 
 use super::lengths;
-use super::maps;
 
 /// A record in the file or in a chunk.
 #[derive(Clone, Copy, Debug)]
@@ -45,14 +44,12 @@ impl<'a> RawRecord<'a> {
             Ok(record) => return Ok(record),
             Err(fault) => fault,
         };
-        let body = maps::repeated(self.opcode, self.body).map(|repeated| repeated.body);
-        match body.and_then(|body| maps::parse(self.opcode, &body)) {
-            Some(record) => Ok(record),
-            None => Err(match fault {
-                mcap::McapError::Parse(_) => format!("not a record of type 0x{:02x}", self.opcode),
-                other => other.to_string(),
-            }),
-        }
+        let last = lengths::repeated_key(self.opcode, self.body);
+        let last = last.and_then(|(_, body)| Some(mcap::parse_record(self.opcode, &body).ok()?.into_owned()));
+        last.ok_or_else(|| match fault {
+            mcap::McapError::Parse(_) => format!("not a record of type 0x{:02x}", self.opcode),
+            other => other.to_string(),
+        })
     }
 
     /// Checks the lengths in the record, which is enough for a record whose content is not needed.
@@ -66,7 +63,16 @@ impl<'a> RawRecord<'a> {
 
     /// Describes a key that the metadata of a channel, or a metadata record, has twice.
     pub(super) fn repeated_key(&self) -> Option<String> {
-        maps::repeated(self.opcode, self.body).map(|repeated| repeated.fault())
+        let (key, _) = lengths::repeated_key(self.opcode, self.body)?;
+        let name = match self.parse() {
+            Ok(Record::Channel(channel)) => format!("the metadata of channel {:?}", channel.topic),
+            Ok(Record::Metadata(metadata)) => format!("the metadata record {:?}", metadata.name),
+            _ => format!("a record of type 0x{:02x}", self.opcode),
+        };
+        let key = String::from_utf8_lossy(key);
+        Some(format!(
+            "{name} has the key {key:?} twice, and MCAP does not define which value counts; the last one is used"
+        ))
     }
 }
 

@@ -1,7 +1,7 @@
 //! A complete check of a recording.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use grainlab_any_message::Schema;
@@ -14,9 +14,9 @@ use super::declarations::Declarations;
 use super::definition::StoredDefinition;
 use super::error::{Warning, WarningKind};
 use super::file::OpenFile;
+use super::messages::Selection;
 use super::recording::Recording;
 use super::records::{FRAME, RawRecord, is_misplaced, is_unknown, misplaced};
-use super::selection::Selection;
 use super::walk::{Walked, place, walk};
 
 /// The result of a complete check.
@@ -108,32 +108,32 @@ impl Recording {
     /// against the messages.
     pub fn check(&self) -> Check {
         let found = Contents::of(self);
+        let contradiction = |path: &Path, detail| {
+            self.warn(Warning::of_file(path.to_owned(), WarningKind::Inconsistent, detail))
+        };
         let ledger = self.ledger();
         let unaccounted = self.unaccounted();
         if let Some(ledger) = ledger.as_ref().filter(|_| unaccounted.is_empty()) {
             for topic in ledger {
                 let there = found.by_topic.get(&topic.name).copied().unwrap_or(0);
                 if topic.recorded != there {
-                    let detail = format!(
-                        "the ledger lists {} as recorded on {}, the files hold {there}",
-                        count(topic.recorded, "message"),
-                        topic.name
-                    );
-                    let path = self.path().to_owned();
-                    self.warn(Warning { path, offset: 0, kind: WarningKind::Inconsistent, detail });
+                    let (recorded, name) = (count(topic.recorded, "message"), &topic.name);
+                    let detail =
+                        format!("the ledger lists {recorded} as recorded on {name}, the files hold {there}");
+                    contradiction(self.path(), detail);
                 }
             }
         }
         for detail in self.undecodable().into_values() {
-            let path = self.path().to_owned();
-            self.warn(Warning { path, offset: 0, kind: WarningKind::Inconsistent, detail });
+            contradiction(self.path(), detail);
         }
         let definitions = self.definition_faults();
         let bag = self.bag.as_ref().filter(|_| self.path().is_dir());
-        let wrong = bag.map(|bag| bag.differences(self, &found)).unwrap_or_default();
-        let wrong = wrong.into_iter().map(|detail| (self.path().join("metadata.yaml"), detail));
-        for (path, detail) in definitions.iter().cloned().chain(wrong) {
-            self.warn(Warning { path, offset: 0, kind: WarningKind::Inconsistent, detail });
+        for detail in bag.map(|bag| bag.differences(self, &found)).unwrap_or_default() {
+            contradiction(&self.path().join("metadata.yaml"), detail);
+        }
+        for (path, detail) in &definitions {
+            contradiction(path, detail.clone());
         }
         let recovered = self.recovered();
         let unaccounted = unaccounted.into_iter().filter(|path| !recovered.contains_key(path)).collect();

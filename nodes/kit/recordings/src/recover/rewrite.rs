@@ -11,9 +11,7 @@ use mcap::write::PrivateRecordOptions;
 use mcap::{Attachment, McapError};
 
 use crate::metadata_keys::{METADATA_RECORD, RECOVERED_KEY};
-use crate::reader::{
-    ChannelInfo, Recording, Walked, Warning, WarningKind, is_misplaced, is_unknown, place, walk,
-};
+use crate::reader::{Recording, Walked, Warning, WarningKind, is_misplaced, is_unknown, place, walk};
 use crate::writer::part;
 
 pub(super) struct Written {
@@ -44,7 +42,7 @@ pub(super) fn rewrite(from: &Recording, to: &Path) -> Result<Written, McapError>
         messages: 0,
     };
     for (id, channel) in from.channels() {
-        copy.channel(id, channel)?;
+        copy.channels.insert(id, channel.declare(&mut copy.mcap)?);
     }
     let (mut failure, mut ended) = (None, false);
     let end = walk(from.bytes(), &mut |item| {
@@ -133,18 +131,6 @@ impl Copy {
             }
             _ => {}
         }
-        Ok(())
-    }
-
-    fn channel(&mut self, id: u16, channel: &ChannelInfo) -> Result<(), McapError> {
-        let ChannelInfo { ros_type, schema_encoding, schema, topic, message_encoding, metadata, .. } =
-            channel;
-        let schema = match channel.has_schema() {
-            true => self.mcap.add_schema(ros_type, schema_encoding, schema)?,
-            false => 0,
-        };
-        let new = self.mcap.add_channel(schema, topic, message_encoding, metadata)?;
-        self.channels.insert(id, new);
         Ok(())
     }
 

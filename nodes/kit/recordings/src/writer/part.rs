@@ -14,7 +14,7 @@ use mcap::{Attachment, Compression, McapError, WriteOptions};
 use super::counted::Counted;
 use super::device_sync::DeviceSync;
 use super::names::is_abandoned;
-use super::reserve::Reserve;
+use super::space::Reserve;
 use super::{TopicSpec, WriterOptions};
 use crate::failures::{cannot, reason};
 use crate::reader::FileCount;

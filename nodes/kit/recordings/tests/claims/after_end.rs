@@ -1,11 +1,10 @@
 //! What follows the end of a recording in its file is named, and is read if it belongs to the recording.
 
-use crate::by_hand::{channel, file, message, record, schema};
-use crate::support::of_bytes;
+use crate::by_hand::{HI, channel, file, message, record, schema};
+use crate::support::{file_with, of_bytes, open, post, strings};
 use grainlab_recordings::{Recording, Selection, Warning, WarningKind, recover};
-use mcap::records::{MessageHeader, op};
+use mcap::records::op;
 use mcap::{MAGIC, WriteOptions};
-use std::io::Cursor;
 
 const STRING: &str = "std_msgs/msg/String";
 
@@ -15,16 +14,13 @@ fn times(recording: &Recording) -> Vec<u64> {
 
 /// A file with a message of each of these times, in a chunk each.
 fn written(options: WriteOptions, times: &[u64]) -> Vec<u8> {
-    let mut writer = options.compression_threads(0).create(Cursor::new(Vec::new())).unwrap();
-    let schema = writer.add_schema(STRING, "ros2msg", b"string data\n").unwrap();
-    let channel_id = writer.add_channel(schema, "/a", "cdr", &Default::default()).unwrap();
-    for time in times {
-        let header = MessageHeader { channel_id, sequence: 0, log_time: *time, publish_time: *time };
-        writer.write_to_known_channel(&header, crate::by_hand::HI).unwrap();
-        writer.flush().unwrap();
-    }
-    writer.finish().unwrap();
-    writer.into_inner().into_inner()
+    file_with(options, |writer| {
+        let channel = strings(writer, "/a");
+        for time in times {
+            post(writer, channel, *time, HI);
+            writer.flush().unwrap();
+        }
+    })
 }
 
 /// `cat a.mcap b.mcap > c.mcap`.
@@ -92,7 +88,7 @@ fn messages_between_the_end_record_of_the_data_and_the_summary_are_read_and_name
         let path = root.path().join(format!("{n}.mcap"));
         std::fs::write(&path, &bytes).unwrap();
         recover(&path).unwrap();
-        let made = Recording::open(&path).unwrap();
+        let made = open(&path);
         assert_eq!((times(&made), made.check().warnings), (vec![1, 2], vec![]), "{n}");
     }
 }

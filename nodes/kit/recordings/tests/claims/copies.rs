@@ -1,29 +1,15 @@
 //! Copies have the messages of their sources, and nothing is lost or overwritten on the way.
 
-use crate::support::{SIMULATOR, START, contract, options, run_in, sample, write_run};
+use crate::support::{SIMULATOR, START, Said, contract, open, options, run_in, said, sample, write_run};
 use grainlab_core::{Cell, Contact, Material, Packing, Vec3};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::to_cdr;
 use grainlab_pictures::{Drawn, Picture};
 use grainlab_recordings::copy::{CopyOptions, copy};
 use grainlab_recordings::{
-    COPY_RECORD, ChannelInfo, Compression, METADATA_RECORD, Recording, RunWriter, Selection, SeveralRuns,
-    TopicSpec,
+    COPY_RECORD, ChannelInfo, Compression, METADATA_RECORD, Recording, RunWriter, SeveralRuns, TopicSpec,
 };
 use std::path::Path;
-
-type Said = (String, u32, u64, u64, Vec<u8>);
-
-fn said(recording: &Recording) -> Vec<Said> {
-    let messages = recording.messages(&Selection::default()).unwrap();
-    messages
-        .map(|m| (m.channel.topic.clone(), m.sequence, m.log_time, m.publish_time, m.payload.to_vec()))
-        .collect()
-}
-
-fn open(path: &Path) -> Recording {
-    Recording::open(path).unwrap()
-}
 
 fn sound(path: &Path) -> Recording {
     let check = open(path).check();
@@ -174,7 +160,7 @@ fn other_fields_and_comments(hash: &str) {
             name: "/a".into(),
             ros_type: "p/msg/A".into(),
             definition: definition.into(),
-            schema_encoding: "ros2msg".into(),
+            schema_encoding: if definition.is_empty() { "".into() } else { "ros2msg".into() },
             type_hash: hash.into(),
             qos: String::new(),
         };
@@ -189,6 +175,11 @@ fn other_fields_and_comments(hash: &str) {
     let to = root.path().join("never");
     let error = copy(&recordings, &to, &CopyOptions::default()).unwrap_err();
     assert!(error.to_string().starts_with("/a is p/msg/A"), "{error}");
+    let recordings = [with("e", "int8 x"), with("f", "")];
+    let error = copy(&recordings, &to, &CopyOptions::default()).unwrap_err();
+    let path = recordings[1].path().display();
+    let expected = format!("/a in {path}: the recording has no definition of p/msg/A: give a folder");
+    assert!(error.to_string().starts_with(&expected) && error.to_string().contains("--msg-path"), "{error}");
     assert!(!to.exists());
 }
 

@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
-use crate::support::{START, clock, contract, of_bytes, run_in, stress};
+use crate::support::{
+    START, attach, checked, clock, contract, declare, faults, file_with, of_bytes, post, remark, run_in,
+    stress,
+};
 use grainlab_recordings::{Recording, Selection, WarningKind};
-use mcap::records::{MessageHeader, Metadata, op};
-use std::collections::BTreeMap;
+use mcap::records::{MessageHeader, op};
 
 fn read(bytes: &[u8]) -> (Vec<(String, u32)>, Vec<WarningKind>) {
     let recording = of_bytes(bytes);
@@ -38,39 +40,30 @@ fn every_truncation_gives_the_messages_before_it() {
 
 /// A file as a recorder writes it, with the same bytes each time: a recorder stores the time in it.
 fn same_bytes(count: u64) -> Vec<u8> {
-    let options = mcap::WriteOptions::new().compression_level(1).compression_threads(0);
-    let options = options.profile("ros2").disable_seeking(true).chunk_size(Some(4 << 10));
-    let mut writer = options.create(std::io::Cursor::new(Vec::new())).unwrap();
-    // Five channels, because the first bytes of the header, taken for a message, are of channel 4.
-    let names = ["/stress", "/clock", "/packing", "/strain_rate", "/moduli"];
-    let [stress_id, clock_id, ..] = names.map(|name| {
-        let topic = contract().into_iter().find(|topic| topic.name == name).unwrap();
-        let schema = writer.add_schema(&topic.ros_type, "ros2msg", topic.definition.as_bytes()).unwrap();
-        writer.add_channel(schema, name, "cdr", &Default::default()).unwrap()
-    });
-    writer.flush().unwrap();
-    let attach = |writer: &mut mcap::Writer<_>, name: &str, data: &'static [u8]| {
-        let (name, media_type) = (name.to_owned(), "text/plain".to_owned());
-        let data = data.into();
-        writer.attach(&mcap::Attachment { log_time: 1, create_time: 1, name, media_type, data }).unwrap();
-    };
-    attach(&mut writer, "demo.toml", b"name = \"demo\"\n");
-    for n in 1..=count {
-        let log_time = START + n * 1_000_000;
-        let mut write = |channel_id, sequence, payload: &[u8]| {
-            let header = MessageHeader { channel_id, sequence, log_time, publish_time: log_time };
-            writer.write_to_known_channel(&header, payload).unwrap();
-        };
-        write(stress_id, n as u32, &stress(n));
-        if n % 10 == 0 {
-            write(clock_id, n as u32 / 10, &clock(n));
+    let options = mcap::WriteOptions::new().compression_level(1).profile("ros2").disable_seeking(true);
+    file_with(options.chunk_size(Some(4 << 10)), |writer| {
+        // Five channels, because the first bytes of the header, taken for a message, are of channel 4.
+        let names = ["/stress", "/clock", "/packing", "/strain_rate", "/moduli"];
+        let [stress_id, clock_id, ..] = names.map(|name| {
+            let topic = contract().into_iter().find(|topic| topic.name == name).unwrap();
+            declare(writer, name, &topic.ros_type, &topic.definition)
+        });
+        writer.flush().unwrap();
+        attach(writer, "demo.toml", [1; 2], b"name = \"demo\"\n");
+        for n in 1..=count {
+            let log_time = START + n * 1_000_000;
+            let mut write = |channel_id, sequence, payload: &[u8]| {
+                let header = MessageHeader { channel_id, sequence, log_time, publish_time: log_time };
+                writer.write_to_known_channel(&header, payload).unwrap();
+            };
+            write(stress_id, n as u32, &stress(n));
+            if n % 10 == 0 {
+                write(clock_id, n as u32 / 10, &clock(n));
+            }
         }
-    }
-    attach(&mut writer, "late.txt", b"last words");
-    let metadata = BTreeMap::from([("seed".to_owned(), "7".to_owned())]);
-    writer.write_metadata(&Metadata { name: "run".to_owned(), metadata }).unwrap();
-    writer.finish().unwrap();
-    writer.into_inner().into_inner()
+        attach(writer, "late.txt", [1; 2], b"last words");
+        remark(writer, "run", "seed", "7");
+    })
 }
 
 /// Flips a bit; returns the number of messages that it costs. They are the messages of one chunk, which is named then, and only then.
@@ -78,8 +71,7 @@ fn flipped(bytes: &[u8], whole: &[(String, u32)], at: usize, bit: usize) -> usiz
     let mut copy = bytes.to_vec();
     copy[at] ^= 1 << bit;
     let (found, warnings) = read(&copy);
-    let faults: Vec<String> = of_bytes(&copy).warnings().iter().map(ToString::to_string).collect();
-    let place = format!("bit {bit} of byte {at}: {}", faults.join("; "));
+    let place = format!("bit {bit} of byte {at}: {}", faults(&of_bytes(&copy)));
     // No false message is returned: the messages are those written, in order, with one gap.
     let missing = whole.len() - found.len();
     let head = found.iter().zip(whole).take_while(|(a, b)| a == b).count();
@@ -172,13 +164,10 @@ fn a_topic_that_is_not_there_is_answered_with_those_that_are() {
 
 /// A file with a chunk of one message of `bytes` zeros.
 fn zeros(bytes: usize) -> Vec<u8> {
-    let options = mcap::WriteOptions::new().compression_threads(0).chunk_size(None);
-    let mut writer = options.create(std::io::Cursor::new(Vec::new())).unwrap();
-    let channel_id = writer.add_channel(0, "/depth", "cdr", &Default::default()).unwrap();
-    let header = mcap::records::MessageHeader { channel_id, sequence: 0, log_time: 1, publish_time: 1 };
-    writer.write_to_known_channel(&header, &vec![0; bytes]).unwrap();
-    writer.finish().unwrap();
-    writer.into_inner().into_inner()
+    file_with(mcap::WriteOptions::new().chunk_size(None), |writer| {
+        let channel = writer.add_channel(0, "/depth", "cdr", &Default::default()).unwrap();
+        post(writer, channel, 1, &vec![0; bytes]);
+    })
 }
 
 /// An empty depth image or map compresses ten thousandfold.
@@ -202,7 +191,7 @@ fn a_chunk_that_states_more_than_a_gigabyte_is_refused_unless_it_is_large_itself
     bytes[stated..stated + 8].copy_from_slice(&((1u64 << 30) + 1).to_le_bytes());
     let (found, warnings) = read(&bytes);
     assert!(found.is_empty() && warnings.contains(&WarningKind::DamagedChunk), "{warnings:?}");
-    let text = of_bytes(&bytes).check().warnings.iter().map(ToString::to_string).collect::<String>();
+    let text = checked(&of_bytes(&bytes));
     assert!(text.contains("at most 1073741824 are accepted"), "{text}");
 }
 

@@ -1,17 +1,13 @@
 //! What MCAP forbids is named, and what is read of it is said.
 
 use crate::by_hand::{channel, channel_with, chunk, file, message, metadata, schema};
-use crate::support::of_bytes;
-use grainlab_recordings::{Recording, Selection};
+use crate::support::{faults, of_bytes, said};
+use grainlab_recordings::Recording;
 
 const STRING: &str = "std_msgs/msg/String";
 
-fn faults(recording: &Recording) -> Vec<String> {
-    recording.warnings().iter().map(ToString::to_string).collect()
-}
-
 fn topics(recording: &Recording) -> Vec<String> {
-    recording.messages(&Selection::default()).unwrap().map(|m| m.channel.topic.clone()).collect()
+    said(recording).into_iter().map(|message| message.0).collect()
 }
 
 /// The records in the data section, and in a chunk.
@@ -31,12 +27,9 @@ fn a_channel_or_schema_that_is_declared_twice_with_different_content_is_a_fault_
         for recording in both([5, 6], &[&start[..], &[second, message(1, 6)]].concat()) {
             assert_eq!(topics(&recording), ["/a", "/a"]);
             assert_eq!(recording.info().messages, 2);
-            let found = faults(&recording);
-            assert!(matches!(&found[..], [one] if one.contains(fault)), "{found:?}");
-            assert_eq!(
-                faults(&recording),
-                recording.check().warnings.iter().map(ToString::to_string).collect::<Vec<_>>()
-            );
+            let found = recording.warnings();
+            assert!(matches!(&found[..], [one] if one.detail.contains(fault)), "{found:?}");
+            assert_eq!(found, recording.check().warnings);
         }
     }
     for recording in both([5, 6], &[&start[..], &start[..2], &[message(1, 6)]].concat()) {
@@ -48,7 +41,7 @@ fn a_channel_or_schema_that_is_declared_twice_with_different_content_is_a_fault_
 #[test]
 fn a_schema_with_the_id_0_is_ignored_and_a_check_names_it() {
     for recording in both([5, 5], &[schema(0, STRING), channel(1, 0, "/a"), message(1, 5)]) {
-        assert_eq!((topics(&recording).len(), faults(&recording).len()), (1, 0));
+        assert_eq!((topics(&recording).len(), faults(&recording)), (1, String::new()));
         assert_eq!(recording.channels()[0].ros_type, "");
         assert!(recording.check().warnings[0].detail.contains("has the id 0"));
     }
@@ -60,12 +53,12 @@ fn messages_before_their_channel_and_channels_before_their_schema_are_read_and_a
     let early = [schema(1, STRING), message(1, 4), message(1, 5), channel(1, 1, "/a"), message(1, 6)];
     for recording in both([4, 6], &early) {
         assert_eq!((topics(&recording).len(), recording.info().messages), (3, 3));
-        assert_eq!(faults(&recording).len(), 0);
+        assert_eq!(faults(&recording), "");
         let [fault] = &recording.check().warnings[..] else { panic!("one fault") };
         assert!(fault.detail.starts_with("2 messages on /a before the declaration"), "{fault}");
     }
     for recording in both([5, 5], &[channel(1, 1, "/a"), message(1, 5), schema(1, STRING)]) {
-        assert_eq!((topics(&recording).len(), faults(&recording).len()), (1, 0));
+        assert_eq!((topics(&recording).len(), faults(&recording)), (1, String::new()));
         let [fault] = &recording.check().warnings[..] else { panic!("one fault") };
         assert!(fault.detail.contains("\"/a\" comes before its schema 1"), "{fault}");
     }
@@ -75,7 +68,7 @@ fn messages_before_their_channel_and_channels_before_their_schema_are_read_and_a
 fn a_channel_whose_schema_is_nowhere_is_left_out_and_named() {
     for recording in both([5, 5], &[channel(1, 7, "/a"), message(1, 5)]) {
         assert!(topics(&recording).is_empty());
-        let found = faults(&recording).join("\n");
+        let found = faults(&recording);
         assert!(found.contains("names schema 7, which is missing: its messages are left out"), "{found}");
     }
 }
@@ -88,7 +81,7 @@ fn a_record_that_no_chunk_may_contain_is_a_loss_and_no_end_of_the_file() {
     let recording = of_bytes(&file(&[chunk([5, 5], &inside), metadata("outside", &[])]));
     assert_eq!(recording.metadata_names().into_iter().collect::<Vec<_>>(), ["outside"]);
     assert_eq!(topics(&recording), ["/a"]);
-    let found = faults(&recording).join("\n");
+    let found = faults(&recording);
     assert!(found.contains("type 0x0c in a chunk") && found.contains("type 0x0f in a chunk"), "{found}");
     let cut = file(&[chunk([5, 5], &inside)]);
     assert!(!of_bytes(&cut[..cut.len() - 50]).info().complete, "the end record is outside chunks");
@@ -98,7 +91,7 @@ fn a_record_that_no_chunk_may_contain_is_a_loss_and_no_end_of_the_file() {
 fn a_message_outside_the_times_of_its_chunk_is_a_fault_when_it_is_read() {
     let records = [schema(1, STRING), channel(1, 1, "/a"), message(1, 5)];
     let recording = of_bytes(&file(&[chunk([5, 5], &records)]));
-    assert_eq!((topics(&recording).len(), faults(&recording).len()), (1, 0));
+    assert_eq!((topics(&recording).len(), faults(&recording)), (1, String::new()));
     let [fault] = &of_bytes(&file(&[chunk([6, 7], &records)])).check().warnings[..] else { panic!("one") };
     assert!(fault.detail.contains("its header states 6 to 7 ns"), "{fault}");
 }

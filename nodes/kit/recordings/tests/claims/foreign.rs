@@ -1,39 +1,30 @@
 //! Copies keep all that other programs store beside messages, and name the faults in it.
 
-use crate::by_hand::{channel, chunk, file, message, record, schema};
+use crate::by_hand::{HI, channel, chunk, file, message, record, schema};
+use crate::support::{self, Writer, attach, checked, faults, file_with, open, post, remark, said, strings};
 use grainlab_recordings::copy::{CopyOptions, copy};
 use grainlab_recordings::{Recording, Selection, recover};
-use mcap::records::{MessageHeader, Metadata, Record};
-use mcap::{Attachment, Writer};
+use mcap::WriteOptions;
+use mcap::records::{MessageHeader, Record};
 use std::collections::BTreeMap;
-use std::fs::{self, File};
-use std::io::BufWriter;
+use std::fs;
 use std::path::Path;
 
-const HI: &[u8] = b"\0\x01\0\0\x03\0\0\0hi\0";
-
 /// Writes a file with what `fill` adds.
-fn write(path: &Path, fill: impl FnOnce(&mut Writer<BufWriter<File>>)) {
-    let mut writer = mcap::WriteOptions::new().create(BufWriter::new(File::create(path).unwrap())).unwrap();
-    fill(&mut writer);
-    writer.finish().unwrap();
+fn write(path: &Path, fill: impl FnOnce(&mut Writer)) {
+    fs::write(path, file_with(WriteOptions::new(), fill)).unwrap();
 }
 
 /// Adds a channel with this definition of its type and metadata, and a message.
-fn say(writer: &mut Writer<BufWriter<File>>, ros_type: &str, text: &str, publisher: &str, payload: &[u8]) {
+fn say(writer: &mut Writer, ros_type: &str, text: &str, publisher: &str, payload: &[u8]) {
     let schema = writer.add_schema(ros_type, "ros2msg", text.as_bytes()).unwrap();
     let metadata = BTreeMap::from([("publisher".to_owned(), publisher.to_owned())]);
     let channel_id = writer.add_channel(schema, "/t", "cdr", &metadata).unwrap();
-    let header = MessageHeader { channel_id, sequence: 1, log_time: 5, publish_time: 4 };
-    writer.write_to_known_channel(&header, payload).unwrap();
+    post(writer, channel_id, 5, payload);
 }
 
-fn string(writer: &mut Writer<BufWriter<File>>, publisher: &str, payload: &[u8]) {
+fn string(writer: &mut Writer, publisher: &str, payload: &[u8]) {
     say(writer, "std_msgs/msg/String", "string data\n", publisher, payload);
-}
-
-fn open(path: &Path) -> Recording {
-    Recording::open(path).unwrap()
 }
 
 /// The copy of a recording, and what was said of it.
@@ -65,14 +56,9 @@ fn copies_keep_all_metadata_of_a_name_times_of_stored_files_and_the_channel_of_e
     write(&source, |w| {
         string(w, "first", HI);
         string(w, "second", HI);
-        for vin in ["123", "456"] {
-            let metadata = BTreeMap::from([("vin".to_owned(), vin.to_owned())]);
-            w.write_metadata(&Metadata { name: "vehicle".to_owned(), metadata }).unwrap();
-        }
-        for (log_time, data) in [(2, b"x"), (3, b"y"), (4, b"y")] {
-            let (name, media_type) = ("calibration".to_owned(), String::new());
-            w.attach(&Attachment { log_time, create_time: 1, name, media_type, data: data[..].into() })
-                .unwrap();
+        ["123", "456"].iter().for_each(|vin| remark(w, "vehicle", "vin", vin));
+        for (time, data) in [(2, b"x"), (3, b"y"), (4, b"y")] {
+            attach(w, "calibration", [time, 1], data);
         }
     });
     let (made, notes) = copied(&source, &root.path().join("b.mcap"));
@@ -161,21 +147,19 @@ fn a_copy_and_a_recovery_keep_definitions_that_no_channel_uses() {
         let has = |bit: u32| choice >> bit & 1 == 1;
         let (source, to) =
             (root.path().join(format!("{choice}.mcap")), root.path().join(format!("{choice}c.mcap")));
-        let options = mcap::WriteOptions::new().repeat_schemas(has(0)).use_chunks(has(1));
-        let mut w = options.create(BufWriter::new(File::create(&source).unwrap())).unwrap();
-        w.add_schema("my/msg/Unused", "ros2msg", b"uint8 x\n").unwrap();
-        if has(2) {
-            w.flush().unwrap();
-        }
-        let channel_id = w.add_channel(0, "/t", "cdr", &BTreeMap::new()).unwrap();
-        let header = MessageHeader { channel_id, sequence: 1, log_time: 5, publish_time: 4 };
-        w.write_to_known_channel(&header, HI).unwrap();
-        w.finish().unwrap();
-        drop(w);
+        let options = WriteOptions::new().repeat_schemas(has(0)).use_chunks(has(1));
+        let whole = file_with(options, |w| {
+            w.add_schema("my/msg/Unused", "ros2msg", b"uint8 x\n").unwrap();
+            if has(2) {
+                w.flush().unwrap();
+            }
+            let channel = w.add_channel(0, "/t", "cdr", &BTreeMap::new()).unwrap();
+            post(w, channel, 5, HI);
+        });
+        fs::write(&source, &whole).unwrap();
         let (made, notes) = copied(&source, &to);
         assert_eq!((made.check().warnings, notes.as_str()), (vec![], ""), "{choice}");
         assert!(names(&to).contains("my/msg/Unused"), "{choice}");
-        let whole = fs::read(&source).unwrap();
         fs::write(&source, &whole[..whole.len() - 8]).unwrap();
         recover(&source).unwrap();
         assert!(names(&source).contains("my/msg/Unused"), "{choice}");
@@ -203,10 +187,7 @@ fn messages_that_are_compressed_one_by_one_are_read_and_copied_as_what_they_are(
     let compression = |format: &str| format!("  compression_format: {format}\n  compression_mode: MESSAGE");
     metadata(&source, &compression("zstd"));
     write(&source.join("r_0.mcap"), |w| string(w, "", &zstd::bulk::compress(HI, 1).unwrap()));
-    let payload = |recording: &Recording| {
-        let mut messages = recording.messages(&Selection::default()).unwrap();
-        messages.next().map(|m| m.payload.to_vec())
-    };
+    let payload = |recording: &Recording| said(recording).pop().map(|message| message.4);
     assert_eq!(payload(&open(&source)).unwrap(), HI);
     assert_eq!(open(&source).info().compression[0], "zstd of each message");
     assert_eq!(payload(&open(&source.join("r_0.mcap"))).unwrap(), HI);
@@ -256,11 +237,9 @@ fn a_check_names_definitions_and_metadata_that_are_wrong_and_counts_checksums() 
     {
         metadata(&source, text);
         let check = open(&source).check();
-        let faults = check.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
-        assert!(
-            faults.contains(expected) && faults.contains("definition of my/msg/Bad cannot be parsed"),
-            "{faults}"
-        );
+        let found = checked(&open(&source));
+        let both = [expected, "definition of my/msg/Bad cannot be parsed"];
+        assert!(both.iter().all(|words| found.contains(words)), "{found}");
         assert_eq!((check.ros_definitions, check.all_definitions), (1, 2));
         assert!(check.checksums > 0);
     }
@@ -271,14 +250,9 @@ fn a_check_names_definitions_and_metadata_that_are_wrong_and_counts_checksums() 
 #[test]
 fn a_check_names_each_statement_of_the_metadata_that_the_files_contradict() {
     let root = tempfile::tempdir().unwrap();
-    let at = |writer: &mut Writer<BufWriter<File>>, log_time| {
-        let schema = writer.add_schema("std_msgs/msg/String", "ros2msg", b"string data\n").unwrap();
-        let channel_id = writer.add_channel(schema, "/t", "cdr", &BTreeMap::new()).unwrap();
-        let header = MessageHeader { channel_id, sequence: 1, log_time, publish_time: log_time };
-        writer.write_to_known_channel(&header, HI).unwrap();
-    };
     write(&root.path().join("r_0.mcap"), |w| {
-        [2, 5, 1].into_iter().for_each(|s| at(w, s * 1_000_000_000));
+        let channel = strings(w, "/t");
+        [2, 5, 1].iter().for_each(|s| post(w, channel, s * 1_000_000_000, HI));
     });
     let topic = |name: &str, kind: &str, n: u64| {
         format!(
@@ -335,8 +309,7 @@ fn a_message_that_two_programs_recorded_is_merged_to_one_though_number_and_defau
     let paths = [(1, "string data\n"), (0, "string data \"none\"\n")].map(|(sequence, text)| {
         let path = root.path().join(format!("{sequence}.mcap"));
         write(&path, |w| {
-            let schema = w.add_schema("my/msg/A", "ros2msg", text.as_bytes()).unwrap();
-            let channel_id = w.add_channel(schema, "/t", "cdr", &BTreeMap::new()).unwrap();
+            let channel_id = support::declare(w, "/t", "my/msg/A", text);
             let header = MessageHeader { channel_id, sequence, log_time: 5, publish_time: 4 };
             w.write_to_known_channel(&header, HI).unwrap();
         });
@@ -371,8 +344,7 @@ fn a_directory_that_lacks_messages_of_its_metadata_is_damaged_and_parts_in_folde
         let information = format!("relative_file_paths: [{files}]\n  message_count: {messages}");
         let text = format!("rosbag2_bagfile_information:\n  {information}\n");
         fs::write(directory.join("metadata.yaml"), text).unwrap();
-        let warnings = open(directory).warnings();
-        warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+        faults(&open(directory))
     };
     assert_eq!(stated("r_0.mcap, data/r_1.mcap", 2), "");
     for (files, messages, fault) in [
@@ -400,7 +372,7 @@ fn a_metadata_file_that_cannot_be_read_is_named_by_every_reader() {
             assert!(found.path == path && found.detail.contains("it cannot be read"), "{found}");
             assert!(found.detail.contains(fault), "{fault}: {found}");
         }
-        assert_eq!(open(root.path()).messages(&Selection::default()).unwrap().count(), 1);
+        assert_eq!(said(&open(root.path())).len(), 1);
     };
     for (content, fault) in
         [(&b"\xff\xfe"[..], "not UTF-8"), (b"a: [", ""), (b"a: 1", "rosbag2_bagfile"), (b"", "")]
@@ -427,8 +399,7 @@ fn a_file_that_a_directory_has_twice_is_read_once_and_named() {
     };
     let found = || {
         let recording = open(directory);
-        let count = recording.messages(&Selection::default()).unwrap().count();
-        (count, recording.warnings().iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
+        (said(&recording).len(), faults(&recording))
     };
     stated("r_0.mcap, r_0.mcap");
     let (count, faults) = found();

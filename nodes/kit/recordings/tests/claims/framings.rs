@@ -1,52 +1,40 @@
 //! Every legal framing of the same content is read, checked and copied without loss, and none is called faulty: a slice of the
 //! matrix of MCAP's conformance suite.
 
-use crate::by_hand::{channel, compressed_chunk, file, message, schema};
-use crate::support::of_bytes;
+use crate::by_hand::{HI, channel, compressed_chunk, file, message, schema};
+use crate::support::{Said, Writer, attach, checked, file_with, of_bytes, open, post, remark, said, strings};
 use grainlab_recordings::copy::{CopyOptions, copy};
-use grainlab_recordings::{Recording, Selection, StoredFile};
-use mcap::records::{MessageHeader, Metadata};
-use mcap::{Attachment, WriteOptions};
-use std::collections::BTreeMap;
-use std::io::{Cursor, Write};
+use grainlab_recordings::{Recording, StoredFile};
+use mcap::WriteOptions;
+use std::io::Write;
 
-/// All that a file holds: messages with topic, type and payload; stored files; metadata records; topics.
-type Content = (Vec<(String, String, u64, Vec<u8>)>, Vec<StoredFile>, Vec<String>, Vec<String>);
+/// All that a file holds: messages, stored files, names of metadata records; name, type and number of messages of each topic.
+type Content = (Vec<Said>, Vec<StoredFile>, Vec<String>, Vec<String>);
 
 fn content(recording: &Recording) -> Content {
-    let messages = recording.messages(&Selection::default()).unwrap();
-    let messages = messages
-        .map(|m| (m.channel.topic.clone(), m.channel.ros_type.clone(), m.log_time, m.payload.to_vec()));
-    let topics = recording.info().topics.into_iter().map(|t| format!("{} {}", t.name, t.messages));
+    let topics = recording.info().topics.into_iter();
+    let topics = topics.map(|t| format!("{} {} {}", t.name, t.ros_type, t.messages));
     let metadata = recording.metadata_names().into_iter().filter(|name| name != "grainlab_copy");
-    (messages.collect(), recording.stored_files(), metadata.collect(), topics.collect())
+    (said(recording), recording.stored_files(), metadata.collect(), topics.collect())
 }
 
 /// Two topics with messages in two chunks, one of them without a schema; a topic without messages; stored files and metadata
 /// records, two of each with one name.
 fn write(options: WriteOptions) -> Vec<u8> {
-    let mut writer = options.compression_threads(0).create(Cursor::new(Vec::new())).unwrap();
-    let schema = writer.add_schema("std_msgs/msg/String", "ros2msg", b"string data\n").unwrap();
-    let none = BTreeMap::new();
-    let channels = [(schema, "/a"), (0, "/raw"), (schema, "/silent")]
-        .map(|(schema, topic)| writer.add_channel(schema, topic, "cdr", &none).unwrap());
-    for log_time in 0..6 {
-        let channel_id = channels[usize::from(log_time % 3 == 2)];
-        let header = MessageHeader { channel_id, sequence: 0, log_time, publish_time: log_time };
-        writer.write_to_known_channel(&header, b"\0\x01\0\0\x03\0\0\0hi\0").unwrap();
-        if log_time == 0 || log_time == 3 {
-            writer.flush().unwrap();
+    file_with(options, |writer| {
+        let raw = |writer: &mut Writer| writer.add_channel(0, "/raw", "cdr", &Default::default()).unwrap();
+        let [a, raw, _] = [strings(writer, "/a"), raw(writer), strings(writer, "/silent")];
+        for log_time in 0..6 {
+            post(writer, if log_time % 3 == 2 { raw } else { a }, log_time, HI);
+            if log_time == 0 || log_time == 3 {
+                writer.flush().unwrap();
+            }
         }
-    }
-    for (n, data) in [b"1", b"2"].into_iter().enumerate() {
-        let (log_time, name, media_type) = (n as u64, "f".to_owned(), String::new());
-        let file = Attachment { log_time, create_time: 0, name, media_type, data: data[..].into() };
-        writer.attach(&file).unwrap();
-        let metadata = BTreeMap::from([("n".to_owned(), n.to_string())]);
-        writer.write_metadata(&Metadata { name: "m".to_owned(), metadata }).unwrap();
-    }
-    writer.finish().unwrap();
-    writer.into_inner().into_inner()
+        for (time, data) in [b"1", b"2"].into_iter().enumerate() {
+            attach(writer, "f", [time as u64, 0], data);
+            remark(writer, "m", "n", &time.to_string());
+        }
+    })
 }
 
 #[test]
@@ -73,7 +61,7 @@ fn whatever_parts_of_the_index_a_file_has_all_content_is_read_and_copied_and_no_
         if choice % 7 == 0 {
             let to = root.path().join(format!("{choice}.mcap"));
             let copied = copy(&[recording], &to, &CopyOptions::default()).unwrap();
-            let made = Recording::open(&to).unwrap();
+            let made = open(&to);
             assert_eq!(
                 (content(&made), made.check().warnings, copied.notes),
                 (expected.clone(), vec![], vec![])
@@ -100,13 +88,11 @@ fn a_chunk_of_several_compressed_frames_is_read_to_its_end() {
             let times = [5, if rest.len() < 100 { 6 } else { 7 }];
             let read = |content: &[u8]| {
                 let recording = of_bytes(&file(&[compressed_chunk(times, name, size, content)]));
-                let messages = recording.messages(&Selection::default()).unwrap().count();
-                (messages, recording.check().warnings)
+                (said(&recording).len(), checked(&recording))
             };
             let expected = 1 + rest.len() / message(1, 6).len();
-            assert_eq!(read(&frames.concat()), (expected, vec![]), "{name}");
-            let (messages, faults) = read(&frames[0]);
-            let text = faults.iter().map(ToString::to_string).collect::<String>();
+            assert_eq!(read(&frames.concat()), (expected, String::new()), "{name}");
+            let (messages, text) = read(&frames[0]);
             let found = format!("it decompresses to {} bytes, not to {size}", start.len());
             assert!(messages == 0 && text.contains(&found), "{name}: {text}");
         }

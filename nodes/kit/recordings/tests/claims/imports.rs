@@ -1,19 +1,12 @@
 //! Files of other programs: read by the rules of their formats, refused with line and reason.
 
-use grainlab_core::{Material, Vec3};
+use grainlab_core::Vec3;
 use grainlab_recordings::import::{
     ImportError, ImportOptions, Setting, csv, extended_xyz, lammps_data, lammps_dump, load,
 };
 
-use crate::reference_packing::{golden, reference};
-
-fn glass() -> ImportOptions {
-    ImportOptions::of_grains(&Material::GLASS, 0.1)
-}
-
-fn in_cube(edge: f64) -> ImportOptions {
-    ImportOptions { cell: Some(grainlab_core::Mat3::identity() * edge), ..glass() }
-}
+use crate::reference_packing::reference;
+use crate::support::{assert_refused, assert_says, glass, golden, in_cube};
 
 const PAIR: &str =
     "p,1,0.1,0,0,0.1,10.471975511965978,0,0,0,0,0,0\np,2,0.95,0,0,0.1,10.471975511965978,0,0,0,0,0,0\n";
@@ -85,11 +78,12 @@ fn malformed_rows_are_named_by_line() {
 fn a_missing_sidecar_is_answered_with_the_flags_that_replace_it() {
     let root = tempfile::tempdir().unwrap();
     let alone = root.path().join("alone.csv.gz");
-    std::fs::copy(golden("ref_packing_500.csv.gz"), &alone).unwrap();
+    std::fs::copy(golden("reference/ref_packing_500.csv.gz"), &alone).unwrap();
     let error = load(&alone, &ImportOptions::default()).unwrap_err().to_string();
-    for flag in ["alone.csv.gz", "--cell", "--shear-modulus", "--poisson", "--density", "--friction"] {
-        assert!(error.contains(flag), "{error}");
-    }
+    assert_says(
+        &error,
+        &["alone.csv.gz", "--cell", "--shear-modulus", "--poisson", "--density", "--friction"],
+    );
     let ImportError::Missing(missing) = csv::packing(PAIR, None, &glass()).unwrap_err() else { panic!() };
     assert_eq!(missing, [Setting::Cell]);
     let cell = Some(*reference().packing.cell.matrix());
@@ -112,16 +106,14 @@ fn units_boundaries_and_counts_that_a_file_states_are_honoured_or_refused() {
     };
     assert_eq!(xyz(frame).unwrap().step, 3);
     assert_eq!(xyz(&frame.replace(" pbc=\"T T T\" units=\"m kg s\"", "")).unwrap().packing.contacts.len(), 1);
-    for (from, to, expected) in [
+    let changes = [
         ("T T T", "T T F", "pbc T T F is not supported"),
         ("T T T", "F F F", "pbc F F F"),
         ("m kg s", "mm g s", "units mm g s is not supported"),
         ("step=3", "step=abc", "step is \"abc\""),
         ("step=3", "contact_law=glue", "glue"),
-    ] {
-        let error = xyz(&frame.replace(from, to)).unwrap_err().to_string();
-        assert!(error.contains(expected), "{to}: {error}");
-    }
+    ];
+    assert_refused(frame, &changes, xyz);
     let linear =
         xyz(&frame.replace("step=3", "contact_law=linear contact_law_parameters=\"1e5 0.5\"")).unwrap();
     assert_eq!(linear.packing.law.name(), "linear");
@@ -156,12 +148,8 @@ fn a_value_given_replaces_that_of_every_file_and_says_so() {
     let given = ImportOptions { density: Some(2500.0), radius: Some(0.12), ..ImportOptions::default() };
     let found = csv::packing(PAIR, Some(sidecar), &given).unwrap();
     assert_eq!((found.packing.material.density, found.packing.radii.clone()), (2500.0, vec![0.12; 2]));
-    let notes = found.notes.join("\n");
-    for expected in
-        ["the density of the file, 7850 kg/m3, is replaced by the one given, 2500", "the radii of the file"]
-    {
-        assert!(notes.contains(expected), "{notes}");
-    }
+    let replaced = "the density of the file, 7850 kg/m3, is replaced by the one given, 2500";
+    assert_says(&found.notes.join("\n"), &[replaced, "the radii of the file"]);
     // An equal value is not replaced.
     let same = ImportOptions { density: Some(7850.0), ..ImportOptions::default() };
     let notes = csv::packing(PAIR, Some(sidecar), &same).unwrap().notes.join("\n");
@@ -169,8 +157,7 @@ fn a_value_given_replaces_that_of_every_file_and_says_so() {
     let given = ImportOptions { density: Some(1000.0), radius: Some(0.2), ..glass() };
     let data = lammps_data::packing(DATA, &given).unwrap();
     assert_eq!(data.packing.radii, [0.2; 3]);
-    let notes = data.notes.join("\n");
-    assert!(notes.contains("2500 kg/m3, is replaced") && notes.contains("the radii of the file"), "{notes}");
+    assert_says(&data.notes.join("\n"), &["2500 kg/m3, is replaced", "the radii of the file"]);
     let dump = lammps_dump::packings(DUMP, &given).unwrap().remove(0);
     assert!(dump.packing.radii == [0.2; 2] && dump.notes.join("\n").contains("the radii of the file"));
 }
@@ -227,46 +214,38 @@ fn a_data_file_is_read_with_its_tilted_box_and_sorted_by_id() {
     assert!((p.contacts[0].overlap - 0.05).abs() < 1e-15);
     let expected = p.material.normal_force(0.05, p.contacts[0].overlap);
     assert!((p.contacts[0].normal_force / expected - 1.0).abs() < 1e-14);
-    let notes = imported.notes.join("\n");
-    for said in
-        ["does not state its boundaries", "contacts were found", "the contact overlaps by more than 10 %"]
-    {
-        assert!(notes.contains(said), "{notes}");
-    }
+    let said =
+        ["does not state its boundaries", "contacts were found", "the contact overlaps by more than 10 %"];
+    assert_says(&imported.notes.join("\n"), &said);
     assert_eq!((imported.notes.len(), imported.exit()), (3, grainlab_msgs::Exit::PhysicsInvalid));
 }
 
 #[test]
 fn what_a_data_file_must_not_be_is_refused() {
-    for (from, to, expected) in [
+    let changes = [
         ("units = si", "units = lj", "units lj"),
         ("# sphere", "# ellipsoid", "atom_style ellipsoid"),
         ("3 atoms", "4 atoms", "has 3 atoms, and states 4"),
         ("3 atoms", "3 atoms\n5 bonds", "5 bonds"),
         ("0.45 0 0 0 0 0", "0.45 0 0 0 0 x", "an image flag is \"x\""),
         ("0.25 0 0 xy xz yz", "1 0 nan avec", "edge vector"),
-        ("20 1 0.3 2500", "20 1 0.3 2600", ""),
         ("10 1 2 3 4 5 6", "11 1 2 3 4 5 6", "none of grain 10"),
         ("10 1 2 3 4 5 6\n20 0 0 0 0 0 0\n30 0 0 0 0 0 0\n", "", "none of grain 30"),
         ("10 1 0.2", "10 1", "7 or 10 fields"),
         ("-0.5 0.5 zlo zhi", "", "--cell"),
         ("-0.5 0.5 zlo zhi", "0.5 -0.5 zlo zhi", "no positive volume"),
-    ] {
-        assert!(DATA.contains(from), "{from}");
-        let options = ImportOptions { density: (!expected.is_empty()).then_some(2500.0), ..glass() };
-        let error = lammps_data::packing(&DATA.replacen(from, to, 1), &options).unwrap_err().to_string();
-        assert!(
-            error.contains(if expected.is_empty() { "mixture of densities" } else { expected }),
-            "{to}: {error}"
-        );
-    }
+    ];
+    assert_refused(DATA, &changes, |text| lammps_data::packing(text, &glass()));
+    let mixed = [("20 1 0.3 2500", "20 1 0.3 2600", "mixture of densities")];
+    let options = ImportOptions { density: None, ..glass() };
+    assert_refused(DATA, &mixed, |text| lammps_data::packing(text, &options));
 }
 
 /// LAMMPS refuses these lines, too: its names have one spelling, and its header is above all sections.
 #[test]
 fn a_line_of_a_data_file_that_lammps_does_not_know_is_refused_with_its_number() {
     const TILT: &str = "0.25 0 0 xy xz yz";
-    for (from, to, expected) in [
+    let changes = [
         (TILT, "0.25 0 xy xz yz", "line 9: \"0.25 0 xy xz yz\" is neither a line of the header"),
         (TILT, "0.25 xy\n0 xz\n0 yz", "line 9: \"0.25 xy\" is neither"),
         (TILT, "0.25,0,0 xy xz yz", "line 9: \"0.25,0,0 xy xz yz\" is neither"),
@@ -283,17 +262,10 @@ fn a_line_of_a_data_file_that_lammps_does_not_know_is_refused_with_its_number() 
         ("Atoms # sphere", "atoms # sphere", "line 11: \"atoms\" is neither"),
         ("Atoms # sphere", "Atoms sphere", "line 11: \"Atoms sphere\" is neither"),
         ("Velocities", "velocities", "line 17: \"velocities\" is neither"),
-        (
-            "0.25 0 0 xy xz yz",
-            "\nMasses\n\n1 2\n\n0.25 0 0 xy xz yz",
-            "line 14: a line of the header is below a section",
-        ),
+        (TILT, "\nMasses\n\n1 2\n\n0.25 0 0 xy xz yz", "line 14: a line of the header is below a section"),
         ("10 1 0.2", "nan 1 0.2", "line 14: id is nan, not a whole number"),
-    ] {
-        assert!(DATA.contains(from), "{from}");
-        let error = lammps_data::packing(&DATA.replacen(from, to, 1), &glass()).unwrap_err().to_string();
-        assert!(error.contains(expected), "{to}: {error}");
-    }
+    ];
+    assert_refused(DATA, &changes, |text| lammps_data::packing(text, &glass()));
 }
 
 #[test]
@@ -368,7 +340,7 @@ fn a_dump_is_read_frame_by_frame() {
 
 #[test]
 fn what_a_dump_must_not_be_is_refused() {
-    for (from, to, expected) in [
+    let changes = [
         ("pp pp pp", "pp pp ff", "periodic"),
         ("xs ys zs", "a b c", "no positions"),
         ("diameter vx vy vz", "diameter xu yu zu", "forms of its position"),
@@ -379,11 +351,8 @@ fn what_a_dump_must_not_be_is_refused() {
         ("-1 1\n", "-1\n", "a bound has 2 numbers"),
         ("BOX BOUNDS pp", "BOX BOUNDS abc origin pp", "4 numbers"),
         ("ITEM: TIMESTEP\n10", "ITEM: UNITS\nlj\nITEM: TIMESTEP\n10", "units lj"),
-    ] {
-        assert!(DUMP.contains(from), "{from}");
-        let error = lammps_dump::packings(&DUMP.replacen(from, to, 1), &glass()).unwrap_err().to_string();
-        assert!(error.contains(expected), "{to}: {error}");
-    }
+    ];
+    assert_refused(DUMP, &changes, |text| lammps_dump::packings(text, &glass()));
     for cut in (0..DUMP.len()).step_by(7) {
         // Never a panic; a truncated frame is an error, not a smaller packing.
         if let Ok(frames) = lammps_dump::packings(&DUMP[..cut], &glass()) {
@@ -394,27 +363,26 @@ fn what_a_dump_must_not_be_is_refused() {
 
 #[test]
 fn a_frame_of_extended_xyz_with_a_fault_names_its_line() {
-    let header = "Lattice=\"1 0 0 0 1 0 0 0 1\" Properties=pos:R:3:radius:R:1";
-    let read = |text: String| {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.xyz");
-        std::fs::write(&path, text).unwrap();
-        let options = ImportOptions::of_grains(&Material::GLASS, 0.0);
-        load(&path, &options).map(|loaded| loaded.packings.len()).map_err(|e| e.to_string())
+    let frame = "1\nLattice=\"1 0 0 0 1 0 0 0 1\" Properties=pos:R:3:radius:R:1\n0 0 0 0.1\n";
+    let read = |text: &str| {
+        let mut frames = 0;
+        extended_xyz::each(text, &glass(), &mut |_| {
+            frames += 1;
+            std::ops::ControlFlow::Continue(())
+        })
+        .map(|()| frames)
     };
-    assert_eq!(read(format!("1\n{header}\n0 0 0 0.1\n")), Ok(1));
-    for (text, words) in [
-        (format!("2\n{header}\n0 0 0 0.1\n"), "1 of 2"),
-        (format!("1\n{header}\n0 0 0\n"), "line 3"),
-        (format!("1\n{header}\n0 0 x 0.1\n"), "line 3"),
-        (format!("1\n{}\n0 0 0 0.1\n", header.replace("pos", "position")), "pos:R:3"),
-        (format!("1\n{}\n0 0 0 0.1\n", header.replace("1 0 0 0 1", "1 0 0 0")), "Lattice has 8"),
-        (format!("1\n{}\n0 0 0 0.1\n", header.replace("R:3:", "R:9999999:")), "width of pos"),
-        (format!("1\n{}\n0 0 0 0.1\n", header.replace("radius", "size")), "radius"),
-    ] {
-        let error = read(text.clone()).unwrap_err();
-        assert!(error.contains(words), "{text}: {error}");
-    }
+    assert_eq!(read(frame).unwrap(), 1);
+    let changes = [
+        ("1\n", "2\n", "1 of 2"),
+        ("0 0 0 0.1", "0 0 0", "line 3"),
+        ("0 0 0 0.1", "0 0 x 0.1", "line 3"),
+        ("pos", "position", "pos:R:3"),
+        ("1 0 0 0 1 0", "1 0 0 0 0", "Lattice has 8"),
+        ("R:3:", "R:9999999:", "width of pos"),
+        ("radius", "size", "radius"),
+    ];
+    assert_refused(frame, &changes, read);
 }
 
 #[test]

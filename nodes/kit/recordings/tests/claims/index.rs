@@ -1,30 +1,22 @@
 //! An index that contradicts the records is not believed; a file without one is no damaged file.
 
-use crate::support::of_bytes;
+use crate::support::{START, attach, checked, file_with, of_bytes, post, remark, strings};
 use grainlab_recordings::{Selection, WarningKind};
 use mcap::WriteOptions;
-use mcap::records::{MessageHeader, op};
-use std::io::Cursor;
-
-const START: u64 = 1_700_000_000_000_000_000;
+use mcap::records::op;
 
 /// A file of 40 messages in 8 chunks, without checksums.
 fn file(options: WriteOptions) -> Vec<u8> {
     let options = options.compression(None).calculate_chunk_crcs(false).calculate_data_section_crc(false);
-    let options = options.calculate_summary_section_crc(false).chunk_size(None);
-    let mut writer = options.create(Cursor::new(Vec::new())).unwrap();
-    let schema = writer.add_schema("std_msgs/msg/String", "ros2msg", b"string data\n").unwrap();
-    let channel_id = writer.add_channel(schema, "/t", "cdr", &Default::default()).unwrap();
-    for sequence in 0..40u32 {
-        let time = START + u64::from(sequence);
-        let header = MessageHeader { channel_id, sequence, log_time: time, publish_time: time };
-        writer.write_to_known_channel(&header, b"\0\x01\0\0\x02\0\0\0v\0").unwrap();
-        if sequence % 5 == 4 {
-            writer.flush().unwrap();
+    file_with(options.calculate_summary_section_crc(false).chunk_size(None), |writer| {
+        let channel = strings(writer, "/t");
+        for n in 0..40 {
+            post(writer, channel, START + n, b"\0\x01\0\0\x02\0\0\0v\0");
+            if n % 5 == 4 {
+                writer.flush().unwrap();
+            }
         }
-    }
-    writer.finish().unwrap();
-    writer.into_inner().into_inner()
+    })
 }
 
 /// Bytes of the bodies of the records with this opcode.
@@ -99,7 +91,7 @@ fn a_message_outside_the_times_that_the_index_states_for_its_chunk_is_named_when
     }
     let (found, warnings) = read(&bytes);
     assert_eq!((found, warnings), (35, vec![WarningKind::Inconsistent]));
-    let text = of_bytes(&bytes).check().warnings.iter().map(ToString::to_string).collect::<String>();
+    let text = checked(&of_bytes(&bytes));
     assert!(text.contains("is not within the times that the index states for its chunk"), "{text}");
 }
 
@@ -127,17 +119,12 @@ fn counts_in_the_statistics_that_contradict_each_other_or_the_records_are_named_
 
 #[test]
 fn entries_of_stored_files_and_metadata_that_contradict_the_file_are_not_believed() {
-    let mut writer =
-        WriteOptions::new().calculate_summary_section_crc(false).create(Cursor::new(Vec::new())).unwrap();
-    for name in ["a", "b"] {
-        let (name, media_type) = (name.to_owned(), String::new());
-        let data = b"x"[..].into();
-        writer.attach(&mcap::Attachment { log_time: 1, create_time: 1, name, media_type, data }).unwrap();
-        let name = "m".to_owned();
-        writer.write_metadata(&mcap::records::Metadata { name, metadata: Default::default() }).unwrap();
-    }
-    writer.finish().unwrap();
-    let whole = writer.into_inner().into_inner();
+    let whole = file_with(WriteOptions::new().calculate_summary_section_crc(false), |writer| {
+        for name in ["a", "b"] {
+            attach(writer, name, [1; 2], b"x");
+            remark(writer, "m", "k", "v");
+        }
+    });
     let read = |at: usize, value: u8| {
         let mut bytes = whole.clone();
         bytes[at] = value;
@@ -163,7 +150,7 @@ fn a_check_names_lists_of_messages_and_times_of_chunks_that_are_not_those_of_the
     let faults = |at: usize| {
         let mut bytes = whole.clone();
         bytes[at] ^= 1;
-        of_bytes(&bytes).check().warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+        checked(&of_bytes(&bytes))
     };
     let lists = faults(bodies(&whole, op::MESSAGE_INDEX)[1] + 6 + 8);
     assert!(lists.contains("is not that of the chunk before it"), "{lists}");

@@ -1,13 +1,9 @@
 //! Contact forces dumped by LAMMPS, for a packing from LAMMPS (`tests/golden/lammps/make.in`).
 
+use crate::support::{assert_says, golden};
 use grainlab_core::stress::stress;
 use grainlab_core::{Material, Packing, Vec3};
 use grainlab_recordings::import::{self, Frames, ImportError, ImportOptions, lammps_dump, load};
-use std::path::{Path, PathBuf};
-
-fn golden(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../tests/golden/lammps").join(name)
-}
 
 /// With these contact forces and columns.
 fn options(forces: String, columns: &[&str]) -> ImportOptions {
@@ -19,24 +15,24 @@ fn options(forces: String, columns: &[&str]) -> ImportOptions {
 }
 
 fn forces() -> String {
-    import::text(&golden("forces.dump.gz")).unwrap()
+    import::text(&golden("lammps/forces.dump.gz")).unwrap()
 }
 
 fn packing(options: &ImportOptions) -> Result<Packing, ImportError> {
-    let imported = load(&golden("grains.dump.gz"), options)?.packings.remove(0);
+    let imported = load(&golden("lammps/grains.dump.gz"), options)?.packings.remove(0);
     assert!(imported.notes.is_empty(), "{:?}", imported.notes);
     Ok(imported.packing)
 }
 
 fn problem(options: &ImportOptions) -> String {
-    load(&golden("grains.dump.gz"), options).unwrap_err().to_string()
+    load(&golden("lammps/grains.dump.gz"), options).unwrap_err().to_string()
 }
 
 #[test]
 fn normal_and_tangential_forces_of_lammps_give_its_stress_and_balance_every_grain() {
     let p = packing(&options(forces(), &[])).unwrap();
     assert_eq!((p.grains(), p.contacts.len()), (400, 847));
-    let known = std::fs::read_to_string(golden("stress.txt")).unwrap();
+    let known = std::fs::read_to_string(golden("lammps/stress.txt")).unwrap();
     let known: Vec<f64> = known.split_whitespace().map(|v| v.parse().unwrap()).collect();
     let s = stress(&p).tensor.voigt();
     // LAMMPS's order is xx yy zz xy xz yz.
@@ -158,7 +154,7 @@ fn forces_on_the_second_grain_are_refused_by_their_sign_and_contacts_of_both_gra
     let text = forces().replacen("\n1724\n", "\n3448\n", 1);
     let rows = text.lines().skip(9).filter(|line| !line.trim().is_empty()).map(reversed);
     let both = format!("{}\n{}\n", text.trim_end(), rows.collect::<Vec<_>>().join("\n"));
-    let imported = load(&golden("grains.dump.gz"), &options(both, &[])).unwrap().packings.remove(0);
+    let imported = load(&golden("lammps/grains.dump.gz"), &options(both, &[])).unwrap().packings.remove(0);
     assert_eq!(imported.packing, packing(&options(forces(), &[])).unwrap());
     assert!(imported.notes[0].starts_with("847 contacts are listed from both"), "{:?}", imported.notes);
 }
@@ -171,7 +167,7 @@ fn normal_forces_alone_are_refused_where_friction_acts_and_the_columns_are_named
     let error = problem(&with);
     assert!(error.contains("p1 p2 p3") && error.contains("compute pf all pair/local"), "{error}");
     let smooth = ImportOptions { friction: Some(0.0), ..with };
-    let notes = load(&golden("grains.dump.gz"), &smooth).unwrap().packings.remove(0).notes;
+    let notes = load(&golden("lammps/grains.dump.gz"), &smooth).unwrap().packings.remove(0).notes;
     assert!(
         notes.len() == 1 && notes[0].contains("more tangential force than a friction of 0 allows"),
         "{notes:?}"
@@ -194,7 +190,7 @@ fn forces_are_those_of_the_step_of_the_grains_and_of_another_step_or_cut_they_ar
 
 /// The dump of the grains with positions of `digits` significant digits.
 fn grains_with_digits(digits: usize) -> String {
-    let text = import::text(&golden("grains.dump.gz")).unwrap();
+    let text = import::text(&golden("lammps/grains.dump.gz")).unwrap();
     let place = |name: &str| {
         let head = text.lines().find_map(|line| line.strip_prefix("ITEM: ATOMS ")).unwrap();
         head.split_whitespace().position(|column| column == name).unwrap()
@@ -221,11 +217,8 @@ fn grains_with_digits(digits: usize) -> String {
 fn forces_beside_positions_of_six_digits_are_refused_by_the_digits_and_with_nine_they_are_read() {
     let options = options(forces(), &[]);
     let error = lammps_dump::packings(&grains_with_digits(6), &options).unwrap_err().to_string();
-    for words in
-        ["contacts carry a force although their grains do not overlap", "positions have 6 digits", "%.17g"]
-    {
-        assert!(error.contains(words), "{error}");
-    }
+    let apart = "contacts carry a force although their grains do not overlap";
+    assert_says(&error, &[apart, "positions have 6 digits", "%.17g"]);
     let read = lammps_dump::packings(&grains_with_digits(9), &options).unwrap().remove(0);
     let expected = packing(&options).unwrap();
     assert!(read.packing.contacts.len() + 2 >= expected.contacts.len(), "{}", read.packing.contacts.len());
@@ -234,10 +227,7 @@ fn forces_beside_positions_of_six_digits_are_refused_by_the_digits_and_with_nine
     // Grains of another state are no matter of digits.
     let smaller = grains_with_digits(17).replace(" radius", " diameter");
     let error = lammps_dump::packings(&smaller, &options).unwrap_err().to_string();
-    assert!(
-        error.contains("847 of 847 contacts carry a force") && error.contains("not of the same state"),
-        "{error}"
-    );
+    assert_says(&error, &["847 of 847 contacts carry a force", "not of the same state"]);
 }
 
 #[test]
@@ -267,7 +257,7 @@ fn a_dump_whose_forces_are_all_zero_is_refused_where_grains_overlap() {
 /// The dump of a settling packing has many frames, and the forces are of one.
 #[test]
 fn forces_are_needed_at_the_step_that_is_read_alone() {
-    let grains = import::text(&golden("grains.dump.gz")).unwrap();
+    let grains = import::text(&golden("lammps/grains.dump.gz")).unwrap();
     let (step, forces) = (grains.lines().nth(1).unwrap(), forces());
     let other = grains.replacen(step, "0", 1);
     let read = |text: &str, frames: Frames| {

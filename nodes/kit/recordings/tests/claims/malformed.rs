@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use crate::support::in_cube;
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use grainlab_core::Material;
 use grainlab_core::contact_search::SearchError;
 use grainlab_recordings::import::{ImportError, ImportOptions, load};
 use std::io::Write;
@@ -36,13 +36,6 @@ impl Folder {
         assert!(error.contains("bad.txt"), "{error}");
         assert!(error.len() < 600, "an error is for people: {} bytes", error.len());
         error
-    }
-}
-
-fn in_cube(edge: f64) -> ImportOptions {
-    ImportOptions {
-        cell: Some(grainlab_core::Mat3::identity() * edge),
-        ..ImportOptions::of_grains(&Material::GLASS, 0.1)
     }
 }
 
@@ -77,48 +70,28 @@ fn windows_line_ends_byte_order_marks_blank_and_comment_lines_change_nothing() {
 }
 
 #[test]
-fn a_header_of_csv_that_names_another_order_of_columns_is_refused() {
+fn a_fault_of_any_format_is_named_with_its_line() {
     let folder = Folder::new();
-    let error = folder.refusal(CSV.replacen("id,x,y,z", "id,z,y,x", 1), &in_cube(1.0));
-    assert!(error.contains("line 1: the comment names z as column 2 of the particles"), "{error}");
-    for header in
-        ["# particles: p,id,x,y,z,radius", "# particles: made by y, z", "# particles: id, x, y, z, r"]
-    {
-        let text = CSV.replacen(CSV.lines().next().unwrap(), header, 1);
-        assert!(load(&folder.write("a", text), &in_cube(1.0)).is_ok(), "{header}");
+    for (text, from, to, expected) in [
+        (CSV, "id,x,y,z", "id,z,y,x", "line 1: the comment names z as column 2 of the particles"),
+        (CSV, "p,2,", "p,1,", "line 3: grain 1 occurs twice, before in line 2"),
+        (YADE, "2\t0.25", "1\t0.25", "line 4: grain 1 occurs twice, before in line 3"),
+        (DATA, "2 1 0.2", "1 1 0.2", "line 11: grain 1 occurs twice, before in line 10"),
+        (DUMP, "2 0.25", "1 0.25", "line 11: grain 1 occurs twice, before in line 10"),
+        (CSV, "0.25,0,0,0.1,", "0.25,0,0,0,", "line 3: the radius of grain 2 is"),
+        (YADE, "0.25\t0\t0\t0.1", "0.25\t0\t0\t0", "line 4: the radius of grain 2 is"),
+        (DATA, "2 1 0.2", "2 1 -0.2", "line 11: the radius of grain 2 is"),
+        (DUMP, "0.25 0 0 0.1", "0.25 0 0 0", "line 11: the radius of grain 2 is"),
+    ] {
+        let error = folder.refusal(text.replacen(from, to, 1), &in_cube(1.0));
+        assert!(error.contains(expected), "{error}");
     }
-}
-
-#[test]
-fn numbers_that_are_not_finite_are_named_by_line() {
-    let folder = Folder::new();
-    for (text, line) in ALL.into_iter().zip([3, 4, 11, 11]) {
+    for (text, separator, line) in [(CSV, ",", 3), (YADE, "\t", 4), (DATA, " ", 11), (DUMP, " ", 11)] {
         for bad in ["nan", "inf", "1e999"] {
             let error = folder.refusal(text.replacen("0.25", bad, 1), &in_cube(1.0));
             assert!(error.contains(&format!("line {line}: position is not finite")), "{error}");
         }
-    }
-}
-
-#[test]
-fn an_id_that_occurs_twice_is_named_with_both_lines() {
-    let folder = Folder::new();
-    for (from, to, text, lines) in [
-        ("p,2,", "p,1,", CSV, (3, 2)),
-        ("2\t0.25", "1\t0.25", YADE, (4, 3)),
-        ("2 1 0.2", "1 1 0.2", DATA, (11, 10)),
-        ("2 0.25", "1 0.25", DUMP, (11, 10)),
-    ] {
-        let error = folder.refusal(text.replacen(from, to, 1), &in_cube(1.0));
-        let expected = format!("line {}: grain 1 occurs twice, before in line {}", lines.0, lines.1);
-        assert!(error.contains(&expected), "{error}");
-    }
-}
-
-#[test]
-fn a_row_with_a_column_too_few_or_too_many_is_named_by_line() {
-    let folder = Folder::new();
-    for (text, separator, line) in [(CSV, ",", 3), (YADE, "\t", 4), (DATA, " ", 11), (DUMP, " ", 11)] {
+        // A column too few, and one too many.
         let text = text.trim_end();
         let (shorter, _) = text.rsplit_once(separator).unwrap();
         for text in [shorter.to_owned(), format!("{text}{separator}1")] {
@@ -126,19 +99,11 @@ fn a_row_with_a_column_too_few_or_too_many_is_named_by_line() {
             assert!(error.contains(&format!("line {line}: ")), "{error}");
         }
     }
-}
-
-#[test]
-fn a_radius_of_zero_is_named_by_line() {
-    let folder = Folder::new();
-    for (from, to, text, line) in [
-        ("0.25,0,0,0.1,", "0.25,0,0,0,", CSV, 3),
-        ("0.25\t0\t0\t0.1", "0.25\t0\t0\t0", YADE, 4),
-        ("2 1 0.2", "2 1 -0.2", DATA, 11),
-        ("0.25 0 0 0.1", "0.25 0 0 0", DUMP, 11),
-    ] {
-        let error = folder.refusal(text.replacen(from, to, 1), &in_cube(1.0));
-        assert!(error.contains(&format!("line {line}: the radius of grain 2 is")), "{error}");
+    for header in
+        ["# particles: p,id,x,y,z,radius", "# particles: made by y, z", "# particles: id, x, y, z, r"]
+    {
+        let text = CSV.replacen(CSV.lines().next().unwrap(), header, 1);
+        assert!(load(&folder.write("a", text), &in_cube(1.0)).is_ok(), "{header}");
     }
 }
 

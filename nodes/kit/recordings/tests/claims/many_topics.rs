@@ -1,11 +1,12 @@
 //! The time to read a recording grows in proportion to the number of its topics.
 
+use crate::by_hand::HI;
+use crate::support::{file_with, of_bytes, open, post};
 use grainlab_recordings::copy::{CopyOptions, copy};
-use grainlab_recordings::{PlayOptions, Player, Recording, Selection};
-use mcap::records::MessageHeader;
+use grainlab_recordings::{PlayOptions, Player, Selection};
+use mcap::WriteOptions;
 use std::collections::BTreeMap;
-use std::fs::{self, File};
-use std::io::BufWriter;
+use std::fs;
 use std::time::{Duration, Instant};
 
 const TOPICS: usize = 10_000;
@@ -14,28 +15,27 @@ const TOPICS: usize = 10_000;
 #[test]
 fn ten_thousand_topics_are_read_checked_copied_and_played_in_seconds() {
     let root = tempfile::tempdir().unwrap();
-    let path = root.path().join("r_0.mcap");
-    let mut writer = mcap::Writer::new(BufWriter::new(File::create(&path).unwrap())).unwrap();
-    let schema = writer.add_schema("std_msgs/msg/String", "ros2msg", b"string data\n").unwrap();
     let latched = "- durability: 1\n  depth: 1\n".to_owned();
     let metadata = BTreeMap::from([("offered_qos_profiles".to_owned(), latched)]);
     let mut entries = String::new();
-    for n in 0..TOPICS {
-        let topic = format!("/t{n}");
-        let channel_id = writer.add_channel(schema, &topic, "cdr", &metadata).unwrap();
-        let header = MessageHeader { channel_id, sequence: 0, log_time: n as u64, publish_time: 0 };
-        writer.write_to_known_channel(&header, b"\0\x01\0\0\x03\0\0\0hi\0").unwrap();
-        entries += &format!(
-            "    - {{topic_metadata: {{name: {topic}, type: std_msgs/msg/String, serialization_format: cdr}}, message_count: 1}}\n"
-        );
-    }
-    writer.finish().unwrap();
+    let bytes = file_with(WriteOptions::new(), |writer| {
+        let schema = writer.add_schema("std_msgs/msg/String", "ros2msg", b"string data\n").unwrap();
+        for n in 0..TOPICS {
+            let topic = format!("/t{n}");
+            let channel = writer.add_channel(schema, &topic, "cdr", &metadata).unwrap();
+            post(writer, channel, n as u64, HI);
+            entries += &format!(
+                "    - {{topic_metadata: {{name: {topic}, type: std_msgs/msg/String, serialization_format: cdr}}, message_count: 1}}\n"
+            );
+        }
+    });
+    fs::write(root.path().join("r_0.mcap"), bytes).unwrap();
     let text =
         "rosbag2_bagfile_information:\n  relative_file_paths: [r_0.mcap]\n  topics_with_message_count:\n";
     fs::write(root.path().join("metadata.yaml"), format!("{text}{entries}")).unwrap();
 
     let begin = Instant::now();
-    let recording = Recording::open(root.path()).unwrap();
+    let recording = open(root.path());
     let names: Vec<String> = recording.channels().iter().map(|c| c.topic.clone()).collect();
     let read = recording.messages(&Selection::topics(&names)).unwrap().count();
     assert_eq!((names.len(), read), (TOPICS, TOPICS));
@@ -43,7 +43,7 @@ fn ten_thousand_topics_are_read_checked_copied_and_played_in_seconds() {
     let options = CopyOptions { start: Some(TOPICS as u64 / 2), ..CopyOptions::default() };
     let copied = copy(&[recording], &root.path().join("copy"), &options).unwrap();
     assert_eq!((copied.messages, copied.latched), (TOPICS as u64, TOPICS as u64 / 2));
-    let made = Recording::open(&root.path().join("copy")).unwrap();
+    let made = open(&root.path().join("copy"));
     let options = PlayOptions { exclude: names[1..].to_vec(), ..PlayOptions::default() };
     assert_eq!(Player::new(&made, &options).unwrap().channels().len(), 1);
     assert_eq!(Player::new(&made, &PlayOptions::default()).unwrap().channels().len(), TOPICS);
@@ -55,17 +55,16 @@ fn ten_thousand_topics_are_read_checked_copied_and_played_in_seconds() {
 #[test]
 fn thousands_of_publishers_of_one_topic_keep_their_channels_in_a_copy() {
     let root = tempfile::tempdir().unwrap();
-    let path = root.path().join("a.mcap");
-    let mut writer = mcap::Writer::new(BufWriter::new(File::create(&path).unwrap())).unwrap();
-    for n in 0..TOPICS {
-        let metadata = BTreeMap::from([("publisher".to_owned(), n.to_string())]);
-        writer.add_channel(0, "/tf", "cdr", &metadata).unwrap();
-    }
-    writer.finish().unwrap();
+    let bytes = file_with(WriteOptions::new(), |writer| {
+        for n in 0..TOPICS {
+            let metadata = BTreeMap::from([("publisher".to_owned(), n.to_string())]);
+            writer.add_channel(0, "/tf", "cdr", &metadata).unwrap();
+        }
+    });
     let begin = Instant::now();
     let to = root.path().join("b.mcap");
-    copy(&[Recording::open(&path).unwrap()], &to, &CopyOptions::default()).unwrap();
-    assert_eq!(Recording::open(&to).unwrap().all_channels().count(), TOPICS);
+    copy(&[of_bytes(&bytes)], &to, &CopyOptions::default()).unwrap();
+    assert_eq!(open(&to).all_channels().count(), TOPICS);
     let taken = begin.elapsed();
     assert!(taken < Duration::from_secs(60), "{taken:?}");
 }

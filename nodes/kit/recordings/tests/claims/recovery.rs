@@ -3,17 +3,11 @@
 use std::fs;
 use std::path::Path;
 
-use crate::support::{SIMULATOR, START, contract, options, run_in, sample, stress};
-use grainlab_recordings::{METADATA_RECORD, Recording, RunWriter, Selection, WarningKind, recover};
-
-type Said = (String, u32, u64, u64, Vec<u8>);
+use crate::support::{self, SIMULATOR, START, Said, contract, open, options, run_in, sample, stress};
+use grainlab_recordings::{METADATA_RECORD, Recording, RunWriter, WarningKind, recover};
 
 fn said(path: &Path) -> Vec<Said> {
-    let recording = Recording::open(path).unwrap();
-    let messages = recording.messages(&Selection::default()).unwrap();
-    messages
-        .map(|m| (m.channel.topic.clone(), m.sequence, m.log_time, m.publish_time, m.payload.to_vec()))
-        .collect()
+    support::said(&open(path))
 }
 
 /// Position of the last attachment, after all messages and before the ledger and the index.
@@ -35,12 +29,12 @@ fn a_file_cut_anywhere_keeps_every_message_that_could_be_read() {
     let (_, bytes) = run_in(&root, 400);
     for cut in (20..bytes.len()).step_by(bytes.len() / 60).chain([bytes.len() - 1]) {
         let directory = killed(root.path(), &bytes, cut);
-        let (before, files) = (said(&directory), Recording::open(&directory).unwrap().stored_files());
-        let channels = Recording::open(&directory).unwrap().channels();
+        let (before, files) = (said(&directory), open(&directory).stored_files());
+        let channels = open(&directory).channels();
         let done = recover(&directory).unwrap();
         assert!(done.changed() && done.files[0].messages == before.len() as u64, "cut at {cut}: {done:?}");
         assert_eq!(said(&directory), before, "cut at {cut}");
-        let recording = Recording::open(&directory).unwrap();
+        let recording = open(&directory);
         assert_eq!(recording.check().warnings, [], "cut at {cut}");
         assert_eq!(recording.stored_files(), files, "cut at {cut}");
         assert_eq!(recording.channels(), channels, "cut at {cut}");
@@ -70,11 +64,11 @@ fn a_damaged_chunk_of_a_cut_file_is_left_out_and_named() {
     let done = recover(&directory).unwrap();
     assert!(done.unreadable().any(|w| w.kind == WarningKind::DamagedChunk), "{done:?}");
     assert!(before.len() > 300 && said(&directory) == before);
-    let metadata = Recording::open(&directory).unwrap().metadata(METADATA_RECORD).unwrap();
+    let metadata = open(&directory).metadata(METADATA_RECORD).unwrap();
     assert!(metadata["recovered_without"].contains("chunk"), "{metadata:?}");
     assert!(!recover(&directory).unwrap().changed());
     // The recorder wrote its ledger, which shows the damage.
-    let check = Recording::open(&directory).unwrap().check();
+    let check = open(&directory).check();
     let left_out = check.recovered.values().flatten();
     assert!(left_out.map(|w| w.kind).any(|kind| kind == WarningKind::DamagedChunk), "{check:?}");
     let faults = check.warnings;
@@ -130,7 +124,7 @@ fn a_resumed_run_goes_on_in_the_next_file_behind_the_last_log_time() {
         }
         assert_eq!(run.finish().unwrap().messages, 50);
     }
-    let recording = Recording::open(&directory).unwrap();
+    let recording = open(&directory);
     assert_eq!(recording.check().warnings, []);
     assert_eq!(recording.paths().len(), 3);
     let all = said(&directory);
@@ -163,11 +157,11 @@ fn a_part_that_metadata_yaml_does_not_know_is_read_and_named() {
     let yaml = fs::read(directory.join("metadata.yaml")).unwrap();
     run.finish().unwrap();
     fs::write(directory.join("metadata.yaml"), yaml).unwrap();
-    let recording = Recording::open(&directory).unwrap();
+    let recording = open(&directory);
     let kinds: Vec<WarningKind> = recording.warnings().iter().map(|w| w.kind).collect();
     assert_eq!((said(&directory).len(), kinds), (whole + 1, vec![WarningKind::Unlisted]));
     assert!(recover(&directory).unwrap().metadata_written);
-    assert_eq!(Recording::open(&directory).unwrap().warnings(), []);
+    assert_eq!(open(&directory).warnings(), []);
 }
 
 /// A power cut or a full disk leaves a file without a byte.
@@ -205,7 +199,7 @@ fn a_new_recording_is_not_begun_in_a_directory_with_a_recording_or_the_metadata_
         fs::write(directory.join("metadata.yaml"), &yaml).unwrap();
     }
     fs::write(directory.join("demo-7-1_0.mcap"), bytes).unwrap();
-    assert_eq!(Recording::open(&directory).unwrap().check().warnings, []);
+    assert_eq!(open(&directory).check().warnings, []);
 }
 
 #[test]
@@ -216,7 +210,7 @@ fn a_run_whose_files_are_lost_begins_again_in_its_directory() {
     let run = RunWriter::append(&directory, "demo-7-1", &contract(), options()).unwrap();
     assert!(run.file().ends_with("demo-7-1_0.mcap"));
     run.finish().unwrap();
-    assert_eq!(Recording::open(&directory).unwrap().warnings(), []);
+    assert_eq!(open(&directory).warnings(), []);
 }
 
 /// A recorder that is killed when it has just begun its file leaves a file without a byte.
@@ -228,12 +222,12 @@ fn an_empty_part_between_others_that_metadata_yaml_does_not_name_is_no_loss() {
     let run = RunWriter::append(&directory, "demo-7-1", &contract(), options()).unwrap();
     assert!(run.file().ends_with("demo-7-1_2.mcap"));
     run.finish().unwrap();
-    assert_eq!(Recording::open(&directory).unwrap().check().warnings, []);
+    assert_eq!(open(&directory).check().warnings, []);
     let yaml = fs::read_to_string(directory.join("metadata.yaml")).unwrap();
     let line = yaml.lines().find(|line| line.contains("demo-7-1_2.mcap")).unwrap();
     let named = yaml.replacen(line, &format!("{}\n{line}", line.replace("_2.mcap", "_1.mcap")), 1);
     fs::write(directory.join("metadata.yaml"), named).unwrap();
-    let warnings = Recording::open(&directory).unwrap().warnings();
+    let warnings = open(&directory).warnings();
     assert!(warnings.iter().any(|w| w.detail.contains("what was recorded in it is lost")), "{warnings:?}");
 }
 
@@ -246,10 +240,10 @@ fn a_file_that_metadata_yaml_does_not_name_is_reported_whatever_its_name() {
     let other = directory.join("camera.mcap");
     fs::write(&other, "").unwrap();
     fs::hard_link(directory.join("demo-7-1_0.mcap"), directory.join("link.mcap")).unwrap();
-    assert_eq!(Recording::open(&directory).unwrap().warnings(), [], "nothing of their own is in them");
+    assert_eq!(open(&directory).warnings(), [], "nothing of their own is in them");
     for name in ["camera.mcap", "other_0.mcap", "other_7.mcap"] {
         fs::write(directory.join(name), &bytes).unwrap();
-        let warnings = Recording::open(&directory).unwrap().warnings();
+        let warnings = open(&directory).warnings();
         let kinds: Vec<_> = warnings.iter().map(|w| (w.kind, w.path.clone())).collect();
         assert_eq!(kinds, [(WarningKind::Unread, directory.join(name))]);
         assert!(warnings[0].to_string().contains("is not read: metadata.yaml does not name it"));
@@ -272,7 +266,7 @@ fn a_pipe_among_the_files_of_a_run_stops_no_reader_and_no_recorder() {
     let (directory, _) = run_in(&root, 30);
     let next = directory.join("demo-7-1_1.mcap");
     fs::write(&next, "").unwrap();
-    assert_eq!(Recording::open(&directory).unwrap().warnings(), []);
+    assert_eq!(open(&directory).warnings(), []);
     fs::rename(&pipe, &next).unwrap();
     assert!(Recording::open(&directory).unwrap_err().to_string().contains("demo-7-1_1.mcap: it is a pipe"));
 }

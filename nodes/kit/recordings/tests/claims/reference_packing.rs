@@ -1,23 +1,18 @@
 //! A packing from LAMMPS: its import has the numbers of LAMMPS.
 
-use std::path::{Path, PathBuf};
-
+use crate::support::golden;
 use grainlab_core::contact_search;
 use grainlab_core::stress::stress;
 use grainlab_recordings::import::{Imported, load};
 
-pub(crate) fn golden(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../tests/golden/reference").join(name)
-}
-
 pub(crate) fn reference() -> Imported {
-    let mut loaded = load(&golden("ref_packing_500.csv.gz"), &Default::default()).unwrap();
+    let mut loaded = load(&golden("reference/ref_packing_500.csv.gz"), &Default::default()).unwrap();
     assert_eq!((loaded.packings.len(), loaded.warnings.len()), (1, 0));
     loaded.packings.remove(0)
 }
 
 fn sidecar() -> serde_json::Value {
-    serde_json::from_str(&std::fs::read_to_string(golden("ref_packing_500.json")).unwrap()).unwrap()
+    serde_json::from_str(&std::fs::read_to_string(golden("reference/ref_packing_500.json")).unwrap()).unwrap()
 }
 
 #[test]

@@ -12,11 +12,7 @@ use grainlab_recordings::{Recording, RunWriter, TopicSpec};
 use grainlab_scene::{Draft, SceneError, Source};
 
 use crate::reference_packing::reference;
-use crate::support::{SIMULATOR, START, options, sample};
-
-fn golden() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../tests/golden/lammps")
-}
+use crate::support::{SIMULATOR, START, assert_says, golden, options, sample};
 
 /// A triaxial path from the packing, with these lines in `[start]` and these tables.
 fn draft(start: &str, tables: &str, friction: f64) -> Draft {
@@ -25,8 +21,13 @@ fn draft(start: &str, tables: &str, friction: f64) -> Draft {
          friction = {friction}\ncontrol = {{ xx = {{ stress = 1.3e5 }}, yy = {{ stress = 1e5 }}, zz = {{ rate = -2.0 }} }}\n\
          until = {{ strain = {{ zz = -0.001 }} }}\n"
     );
-    let source = Source { name: golden().join("scene.toml").to_string_lossy().into_owned(), text };
-    Draft::of(&source, &|_, _| Err("no base".into())).unwrap()
+    draft_in(&golden("lammps"), text)
+}
+
+/// A scene in this folder.
+fn draft_in(folder: &Path, text: String) -> Draft {
+    let name = folder.join("scene.toml").to_string_lossy().into_owned();
+    Draft::of(&Source { name, text }, &|_, _| Err("no base".into())).unwrap()
 }
 
 fn start(draft: &Draft) -> Result<Start, Failure> {
@@ -51,7 +52,7 @@ fn a_frictional_packing_of_lammps_starts_at_rest_at_its_own_stress_and_goes_alon
     let mut run = begun(draft, &found).unwrap();
     let first = run.request().unwrap();
     assert!(first.unbalanced < 1e-8, "{:e}", first.unbalanced);
-    let known = std::fs::read_to_string(golden().join("stress.txt")).unwrap();
+    let known = std::fs::read_to_string(golden("lammps/stress.txt")).unwrap();
     let known: Vec<f64> = known.split_whitespace().map(|v| v.parse().unwrap()).collect();
     // LAMMPS's order is xx yy zz xy xz yz.
     for (own, k) in first.input.stress.voigt().into_iter().zip([0, 1, 2, 5, 4, 3]) {
@@ -69,7 +70,7 @@ fn a_frictional_packing_of_lammps_starts_at_rest_at_its_own_stress_and_goes_alon
 #[test]
 fn the_contact_law_of_the_scene_counts_where_the_file_states_none() {
     let folder = tempfile::tempdir().unwrap();
-    let yade = golden().join("../yade");
+    let yade = golden("yade");
     std::fs::copy(yade.join("default_law.csv"), folder.path().join("real.csv")).unwrap();
     let text = std::fs::read_to_string(yade.join("default_law.json")).unwrap();
     let mut about: serde_json::Value = serde_json::from_str(&text).unwrap();
@@ -80,8 +81,7 @@ fn the_contact_law_of_the_scene_counts_where_the_file_states_none() {
             "name = 'from_yade'\nfriction = 0.365\n[start]\npacking = 'real.csv'\n{contact}\n[[phase]]\nkind = 'relax'\n\
              until = {{ elapsed = 1e-3 }}\n"
         );
-        let name = folder.path().join("scene.toml").to_string_lossy().into_owned();
-        Draft::of(&Source { name, text }, &|_, _| Err("no base".into())).unwrap()
+        draft_in(folder.path(), text)
     };
     let linear = scene("[contact]\nlaw = 'linear'\nnormal_stiffness = 7e6\nstiffness_ratio = 0.3");
     let found = start(&linear).unwrap();
@@ -142,8 +142,7 @@ fn scene_in(folder: &tempfile::TempDir, start: &str) -> Draft {
     let text = format!(
         "name = 'x'\nfriction = 0.3\n[start]\n{start}\n{GLASS}\n[[phase]]\nkind = 'relax'\nuntil = {{ elapsed = 1e-4 }}"
     );
-    let name = folder.path().join("scene.toml").to_string_lossy().into_owned();
-    Draft::of(&Source { name, text }, &|_, _| Err("no base".into())).unwrap()
+    draft_in(folder.path(), text)
 }
 
 #[test]
@@ -181,12 +180,9 @@ fn a_run_does_not_start_from_forces_that_rounded_positions_do_not_hold() {
         write("grains.dump", grains(second));
         start(&scene_in(&folder, "packing = 'grains.dump'\ncontact_forces = 'forces.dump'"))
     };
-    let error = begin("0.00119999").unwrap_err().to_string();
-    for words in
-        ["start.packing: ", "positions have 6 digits", "other forces than those of the file", "%.17g"]
-    {
-        assert!(error.contains(words), "{error}");
-    }
+    let words =
+        ["start.packing: ", "positions have 6 digits", "other forces than those of the file", "%.17g"];
+    assert_says(&begin("0.00119999").unwrap_err().to_string(), &words);
     // With all digits, these forces are of another law or state, which the scene is refused by.
     assert!(begin("0.00119999000000000").is_ok());
 }
@@ -242,8 +238,7 @@ fn a_merged_recording_starts_a_run_only_from_a_step_that_one_of_its_runs_has() {
              rate = [-1.0, -1.0, -1.0, 0, 0, 0]\nuntil = {{ elapsed = 1e-3 }}\n",
             path.display()
         );
-        let source = Source { name: root.path().join("scene.toml").to_string_lossy().into_owned(), text };
-        super::start::start(&Draft::of(&source, &|_, _| Err("no base".into())).unwrap())
+        super::start::start(&draft_in(root.path(), text))
     };
     let error = of(&merged, "step = 0").unwrap_err();
     assert!(error.to_string().contains("several different packings of step 0"), "{error}");
@@ -283,18 +278,17 @@ fn a_recorded_packing_that_overlaps_beyond_every_contact_law_says_so_where_it_is
 #[test]
 fn a_run_starts_from_a_step_of_a_dump_whose_other_steps_have_no_forces() {
     let folder = tempfile::tempdir().unwrap();
-    let grains = import::text(&golden().join("grains.dump.gz")).unwrap();
+    let grains = import::text(&golden("lammps/grains.dump.gz")).unwrap();
     let step = grains.lines().nth(1).unwrap();
     let two = format!("{}{grains}", grains.replacen(step, "0", 1));
     std::fs::write(folder.path().join("two.dump"), two).unwrap();
-    let forces = golden().join("forces.dump.gz");
+    let forces = golden("lammps/forces.dump.gz");
     let of = |asked: &str| {
         let text = format!(
             "name = 'from_lammps'\nfriction = 0.3\n{GLASS}\n[start]\npacking = 'two.dump'\ncontact_forces = {forces:?}\n{asked}\n\
              [[phase]]\nkind = 'relax'\nuntil = {{ elapsed = 1e-3 }}\n"
         );
-        let name = folder.path().join("scene.toml").to_string_lossy().into_owned();
-        start(&Draft::of(&Source { name, text }, &|_, _| Err("no base".into())).unwrap())
+        start(&draft_in(folder.path(), text))
     };
     for asked in [format!("step = {step}"), String::new()] {
         let found = of(&asked).unwrap();

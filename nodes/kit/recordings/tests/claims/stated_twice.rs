@@ -1,13 +1,10 @@
 //! Statements made twice, or of half of the grains, are refused if they contradict each other.
 
-use grainlab_core::{Material, Vec3};
+use crate::support::glass;
+use grainlab_core::Vec3;
 use grainlab_recordings::import::{ImportError, Imported};
-use grainlab_recordings::import::{ImportOptions, csv, extended_xyz, lammps_data, lammps_dump, yade};
+use grainlab_recordings::import::{ImportOptions, csv, extended_xyz, lammps_data, lammps_dump};
 use std::ops::ControlFlow;
-
-fn glass() -> ImportOptions {
-    ImportOptions::of_grains(&Material::GLASS, 0.1)
-}
 
 fn xyz(comment: &str, grains: &str) -> Result<Imported, ImportError> {
     let options = ImportOptions { density: None, ..glass() };
@@ -112,12 +109,6 @@ fn a_data_file_names_its_numbers_and_states_its_box_once_and_all_velocities_or_n
     assert!(error("", &format!("{moving}2 1 0 0 0 0 0\n")).contains("occurs twice"));
     let whole = data("", &format!("{moving}1 0 0 0 0 0 0\n")).unwrap().packing;
     assert_eq!((whole.step, whole.velocities[1]), (12, Vec3::x()));
-}
-
-#[test]
-fn a_cell_of_yade_that_occurs_twice_is_refused() {
-    let text = "#format id_x_y_z_r_matId\n# cell 1 1 1\n# cell 2 2 2\n1 0.1 0 0 0.1 0\n2 0.25 0 0 0.1 0\n";
-    assert!(yade::packing(text, &glass()).unwrap_err().to_string().contains("the cell occurs twice"));
 }
 
 #[test]

@@ -4,7 +4,10 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use crate::reference_packing::reference;
-use crate::support::{ROBOT, SIMULATOR, START, clock, contract, options, run_in, sample, stress, write_run};
+use crate::support::{
+    ROBOT, SIMULATOR, START, clock, contract, file_with, open, options, post, run_in, said, sample, stress,
+    write_run,
+};
 use grainlab_core::Packing;
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::{from_cdr, msg, to_cdr, topics};
@@ -17,7 +20,7 @@ use grainlab_recordings::{
 fn every_message_comes_back_with_its_bytes_times_and_sequence() {
     let root = tempfile::tempdir().unwrap();
     let (directory, _) = run_in(&root, 500);
-    let recording = Recording::open(&directory).unwrap();
+    let recording = open(&directory);
     let all: Vec<_> = recording.messages(&Selection::default()).unwrap().collect();
     assert_eq!(all.len(), 500 + 50 + 1);
     assert!(all.windows(2).all(|w| w[0].log_time < w[1].log_time), "log times must increase strictly");
@@ -70,13 +73,11 @@ fn attachments_metadata_channels_and_the_account_come_back() {
 fn a_time_range_includes_its_start_and_excludes_its_end() {
     let root = tempfile::tempdir().unwrap();
     let (directory, _) = run_in(&root, 300);
-    let recording = Recording::open(&directory).unwrap();
+    let recording = open(&directory);
     let (start, end) = (START + 100 * 1_000_000, START + 200 * 1_000_000);
     let selection = Selection { start: Some(start), end: Some(end), ..Selection::topics(["/stress"]) };
     let found: Vec<_> = recording.messages(&selection).unwrap().map(|m| m.sequence).collect();
     assert_eq!(found, (100..200).collect::<Vec<u32>>());
-    assert_eq!(recording.some_before("stress", Some(start), 1).unwrap()[0].sequence, 99);
-    assert!(recording.some_before("stress", Some(START), 1).unwrap().is_empty());
 }
 
 #[test]
@@ -105,8 +106,8 @@ fn repeats_are_counted_and_not_written_and_two_writers_are_separate() {
     }
     let finished = run.finish().unwrap();
     assert_eq!(finished.messages, 3);
-    let recording = Recording::open(&directory).unwrap();
-    assert_eq!(recording.messages(&Selection::default()).unwrap().count(), 3);
+    let recording = open(&directory);
+    assert_eq!(said(&recording).len(), 3);
     let ledger = recording.ledger().unwrap();
     let stress = ledger.iter().find(|t| t.name == "/stress").unwrap();
     assert_eq!((stress.published, stress.recorded, stress.lost, stress.repeated), (4, 3, 1, 0));
@@ -150,8 +151,8 @@ fn a_disk_too_full_is_refused_at_the_start_and_survived_later() {
     assert!(refused.unwrap_err().to_string().contains("an earlier error ended this recording"));
     run.ledger_mut().report("/stress", SIMULATOR, 2);
     run.finish().unwrap();
-    let recording = Recording::open(&directory).unwrap();
-    assert_eq!(recording.messages(&Selection::default()).unwrap().count(), 1);
+    let recording = open(&directory);
+    assert_eq!(said(&recording).len(), 1);
     assert!(recording.metadata(METADATA_RECORD).unwrap()["ended_by"].contains("bytes are free"));
     assert_eq!(recording.ledger().unwrap().iter().map(|t| t.lost).sum::<u64>(), 1);
 }
@@ -163,7 +164,7 @@ fn a_quiet_topic_is_on_disk_after_the_flush_interval() {
     let patient = WriterOptions { flush_interval: Duration::from_millis(400), ..WriterOptions::default() };
     let mut run = RunWriter::create(&directory, "r", &contract(), patient).unwrap();
     run.write("/stress", &sample(SIMULATOR, 1, START, &stress(1))).unwrap();
-    let count = || Recording::open(&directory).unwrap().messages(&Selection::default()).unwrap().count();
+    let count = || said(&open(&directory)).len();
     run.tick(Instant::now()).unwrap();
     assert_eq!(count(), 0, "the chunk is still open");
     run.tick(Instant::now() + Duration::from_millis(401)).unwrap();
@@ -178,10 +179,10 @@ fn a_dropped_writer_leaves_a_complete_file_marked_as_unfinished() {
     let mut run = RunWriter::create(&directory, "r", &contract(), options()).unwrap();
     run.write("/stress", &sample(SIMULATOR, 1, START, &stress(1))).unwrap();
     drop(run);
-    let recording = Recording::open(&directory).unwrap();
+    let recording = open(&directory);
     assert!(recording.info().complete);
     assert_eq!(recording.metadata(METADATA_RECORD).unwrap()["finished"], "false");
-    assert_eq!(recording.messages(&Selection::default()).unwrap().count(), 1);
+    assert_eq!(said(&recording).len(), 1);
 }
 
 #[test]
@@ -194,7 +195,7 @@ fn metadata_yaml_agrees_with_the_file() {
     let bag = &yaml["rosbag2_bagfile_information"];
     assert_eq!((bag["version"].as_u64(), bag["storage_identifier"].as_str()), (Some(8), Some("mcap")));
     assert_eq!(bag["message_count"].as_u64(), Some(44));
-    let (first, last) = Recording::open(&directory).unwrap().time_range().unwrap();
+    let (first, last) = open(&directory).time_range().unwrap();
     assert_eq!(bag["starting_time"]["nanoseconds_since_epoch"].as_u64(), Some(first));
     assert_eq!(bag["duration"]["nanoseconds"].as_u64(), Some(last - first));
     let counts: BTreeMap<_, _> = bag["topics_with_message_count"]
@@ -204,7 +205,7 @@ fn metadata_yaml_agrees_with_the_file() {
         .map(|t| (t["topic_metadata"]["name"].as_str().unwrap(), t["message_count"].as_u64().unwrap()))
         .collect();
     assert_eq!((counts["/stress"], counts["/clock"], counts["/moduli"]), (40, 4, 0));
-    let recording = Recording::open(&directory).unwrap();
+    let recording = open(&directory);
     for topic in bag["topics_with_message_count"].as_array().unwrap() {
         let metadata = &topic["topic_metadata"];
         let channel = recording.channel(metadata["name"].as_str().unwrap()).unwrap();
@@ -236,10 +237,7 @@ fn a_file_exceeds_its_size_by_one_chunk_at_most_however_fast_messages_come() {
         let size = std::fs::metadata(file).unwrap().len();
         assert!(size <= split_bytes + chunk_size + rest, "{}: {size}", file.display());
     }
-    assert_eq!(
-        Recording::open(&path).unwrap().messages(&Selection::default()).unwrap().count(),
-        count as usize
-    );
+    assert_eq!(said(&open(&path)).len(), count as usize);
 }
 
 #[test]
@@ -251,7 +249,7 @@ fn the_message_of_the_greatest_log_time_is_read_and_an_end_leaves_it_out() {
         run.write("/stress", &sample(SIMULATOR, n, time, &stress(n as u64))).unwrap();
     }
     run.finish().unwrap();
-    let recording = Recording::open(&directory).unwrap();
+    let recording = open(&directory);
     let count = |end| recording.messages(&Selection { end, ..Selection::default() }).unwrap().count();
     assert_eq!((count(None), count(Some(u64::MAX)), count(Some(5))), (2, 1, 0));
 }
@@ -265,9 +263,8 @@ fn the_last_message_is_found_whatever_its_time() {
         run.write("/stress", &sample(SIMULATOR, n, time, &stress(n as u64))).unwrap();
     }
     run.finish().unwrap();
-    let recording = Recording::open(&path).unwrap();
+    let recording = open(&path);
     assert_eq!(recording.last("stress").unwrap().unwrap().log_time, u64::MAX);
-    assert_eq!(recording.some_before("stress", Some(u64::MAX), 1).unwrap()[0].log_time, START);
     assert!(recording.last("/packing").unwrap().is_none() && recording.last("/none").is_err());
 }
 
@@ -275,14 +272,12 @@ fn the_last_message_is_found_whatever_its_time() {
 fn a_whole_file_of_another_program_is_sound_and_its_losses_are_not_judged() {
     let root = tempfile::tempdir().unwrap();
     let path = root.path().join("foreign.mcap");
-    let file = std::fs::File::create(&path).unwrap();
-    let mut made = mcap::WriteOptions::new().library("libmcap 2.0").create(file).unwrap();
-    let channel = made.add_channel(0, "/imu", "cdr", &Default::default()).unwrap();
-    let header =
-        mcap::records::MessageHeader { channel_id: channel, sequence: 1, log_time: 5, publish_time: 5 };
-    made.write_to_known_channel(&header, &[0, 1, 0, 0]).unwrap();
-    made.finish().unwrap();
-    let check = Recording::open(&path).unwrap().check();
+    let bytes = file_with(mcap::WriteOptions::new().library("libmcap 2.0"), |writer| {
+        let channel = writer.add_channel(0, "/imu", "cdr", &Default::default()).unwrap();
+        post(writer, channel, 5, &[0, 1, 0, 0]);
+    });
+    std::fs::write(&path, bytes).unwrap();
+    let check = open(&path).check();
     assert!(check.warnings.is_empty() && check.unaccounted.is_empty(), "{check:?}");
     assert_eq!((check.messages, check.lost, check.unjudged), (1, None, vec![path]));
 }

@@ -1,22 +1,14 @@
 //! Exports of YADE, in its formats and by the export script: all of one packing prepared and measured by YADE
 //! (`tests/golden/yade/make.py`).
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use grainlab_core::Material;
+use crate::support::{assert_refused, assert_says, glass, golden};
 use grainlab_core::stress::stress;
 use grainlab_recordings::import::{ImportOptions, Imported, load, yade};
 
-fn golden(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../tests/golden/yade").join(name)
-}
-
-fn glass() -> ImportOptions {
-    ImportOptions::of_grains(&Material::GLASS, 0.1)
-}
-
 fn one(name: &str, options: &ImportOptions) -> Imported {
-    let loaded = load(&golden(name), options).unwrap_or_else(|e| panic!("{e}"));
+    let loaded = load(&golden("yade").join(name), options).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(loaded.packings.len(), 1);
     loaded.packings.into_iter().next().unwrap()
 }
@@ -28,7 +20,7 @@ fn the_script_for_yade_writes_contacts_and_forces_that_give_yades_own_stress() {
     assert_eq!((p.grains(), imported.notes.len()), (80, 0), "{:?}", imported.notes);
     assert!((p.material.shear_modulus / 29e9 - 1.0).abs() < 1e-14);
     let known: [[f64; 3]; 3] =
-        serde_json::from_slice(&std::fs::read(golden("stress.json")).unwrap()).unwrap();
+        serde_json::from_slice(&std::fs::read(golden("yade/stress.json")).unwrap()).unwrap();
     let found = stress(p).tensor;
     for (r, c) in (0..9).map(|k| (k / 3, k % 3)) {
         // At rest; positive in tension, the convention of YADE.
@@ -53,8 +45,8 @@ fn the_script_for_yade_writes_the_default_law_of_yade_as_linear_springs() {
     // As a file of the script without the law: the forces are recognised.
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("packing.csv");
-    std::fs::copy(golden("default_law.csv"), &path).unwrap();
-    let text = std::fs::read_to_string(golden("default_law.json")).unwrap();
+    std::fs::copy(golden("yade/default_law.csv"), &path).unwrap();
+    let text = std::fs::read_to_string(golden("yade/default_law.json")).unwrap();
     let mut about: serde_json::Value = serde_json::from_str(&text).unwrap();
     about.as_object_mut().unwrap().retain(|key, _| !key.starts_with("contact_law"));
     std::fs::write(path.with_extension("json"), about.to_string()).unwrap();
@@ -133,18 +125,16 @@ fn a_comment_gives_the_cell_and_the_flag_goes_before_it() {
 
 #[test]
 fn what_an_export_must_not_be_is_refused_by_line() {
-    for (from, to, expected) in [
+    let changes = [
         ("0.3\t0.1\t0\n", "0.3\t0.1\n", "line 3: 4 columns, 5 were announced"),
         ("0.45", "abc", "line 4: position is \"abc\""),
         ("0, 0,0,1.5)", "0)", "line 2: a cell has 3 or 9 numbers, not 6"),
         ("x_y_z_r_matId", "x_y_z_r_clumpId", "line 1: #format x_y_z_r_clumpId is not supported"),
         ("x_y_z_r_matId", "jointedPM", "textExt"),
         ("1,0.1,0, 0,1,0, 0,0,1.5", "1,0,0, 0,0,0, 0,0,1", "no positive volume"),
-    ] {
-        assert!(EXPORT.contains(from), "{from}");
-        let error = yade::packing(&EXPORT.replacen(from, to, 1), &glass()).unwrap_err().to_string();
-        assert!(error.contains(expected), "{to}: {error}");
-    }
+        ("# cell", "# cell 2 2 2\n# cell", "the cell occurs twice"),
+    ];
+    assert_refused(EXPORT, &changes, |text| yade::packing(text, &glass()));
 }
 
 #[test]
@@ -158,6 +148,6 @@ fn other_files_of_yade_are_refused_with_what_to_do() {
         let path = root.path().join(name);
         std::fs::write(&path, text).unwrap();
         let error = load(&path, &glass()).unwrap_err().to_string();
-        assert!(error.contains(name) && error.contains("line 1") && error.contains(expected), "{error}");
+        assert_says(&error, &[name, "line 1", expected]);
     }
 }

@@ -56,43 +56,32 @@ fn of_values(a: &Value, b: &Value, path: &str) -> Option<String> {
 mod tests {
     use super::*;
     use grainlab_msgs::Message as _;
-    use grainlab_recordings::{Recording, Selection};
-    use mcap::records::MessageHeader;
-    use std::collections::BTreeMap;
+    use grainlab_recordings::Selection;
 
     /// The first message of a recording with this one only.
-    fn message(encoding: &str, (ros_type, schema): (&str, &[u8]), payload: &[u8]) -> Message {
-        let file = tempfile::NamedTempFile::new().unwrap();
-        let mut writer = mcap::Writer::new(file.reopen().unwrap()).unwrap();
-        let schema =
-            if schema.is_empty() { 0 } else { writer.add_schema(ros_type, "ros2msg", schema).unwrap() };
-        let channel_id = writer.add_channel(schema, "/t", encoding, &BTreeMap::new()).unwrap();
-        let header = MessageHeader { channel_id, sequence: 0, log_time: 1, publish_time: 1 };
-        writer.write_to_known_channel(&header, payload).unwrap();
-        writer.finish().unwrap();
-        let recording = Recording::open(file.path()).unwrap();
+    fn message(encoding: &str, of_type: [&str; 2], payload: &[u8]) -> Message {
+        let recording = crate::testing::recording([("/t".to_owned(), encoding, of_type, payload.to_vec())]);
         recording.messages(&Selection::default()).unwrap().next().unwrap()
     }
 
     #[test]
     fn padding_is_ignored_only_behind_a_complete_message_in_cdr_of_known_type() {
-        let same = |encoding, schema: &[u8], a, b| {
-            let (a, b) =
-                (message(encoding, ("my/msg/X", schema), a), message(encoding, ("my/msg/X", schema), b));
-            let [a, b] = [&a, &b].map(|m| (&*m.channel, &m.payload[..]));
+        let same = |encoding, schema, a, b| {
+            let both = [a, b].map(|payload| message(encoding, ["my/msg/X", schema], payload));
+            let [a, b] = both.each_ref().map(|m| (&*m.channel, &m.payload[..]));
             assert!(is_same(a, a) && is_same(a, b) == is_same(b, a));
             is_same(a, b)
         };
-        assert!(same("cdr", b"uint8 x\n", b"\0\x01\0\0\x01", b"\0\x01\0\0\x01\0\0\0"));
-        assert!(!same("cdr", b"uint8[3] x\n", b"\0\x01\0\0\x01", b"\0\x01\0\0\x01\x02\0\0"));
-        assert!(!same("cdr", b"", b"\0\x01\0\0\x01", b"\0\x01\0\0\x01\x02\x03\x04"));
-        assert!(!same("json", b"", b"123", b"1234"));
-        assert!(!same("protobuf", b"", b"\x08\x01", b"\x08\x01\x10\x02"));
+        assert!(same("cdr", "uint8 x\n", b"\0\x01\0\0\x01", b"\0\x01\0\0\x01\0\0\0"));
+        assert!(!same("cdr", "uint8[3] x\n", b"\0\x01\0\0\x01", b"\0\x01\0\0\x01\x02\0\0"));
+        assert!(!same("cdr", "", b"\0\x01\0\0\x01", b"\0\x01\0\0\x01\x02\x03\x04"));
+        assert!(!same("json", "", b"123", b"1234"));
+        assert!(!same("protobuf", "", b"\x08\x01", b"\x08\x01\x10\x02"));
     }
 
     #[test]
     fn estimates_keep_their_order_within_a_source_whatever_came_between() {
-        let of_type = (Microstructure::TYPE, Microstructure::DEFINITION.as_bytes());
+        let of_type = [Microstructure::TYPE, Microstructure::DEFINITION];
         let estimate = |source: &str, source_step| {
             let estimate =
                 Microstructure { source: source.to_owned(), source_step, ..Microstructure::default() };
@@ -108,7 +97,7 @@ mod tests {
 
     #[test]
     fn channels_of_other_encodings_are_named_by_them() {
-        let [json, cbor] = ["json", "cbor"].map(|encoding| message(encoding, ("", b""), b"123").channel);
+        let [json, cbor] = ["json", "cbor"].map(|encoding| message(encoding, [""; 2], b"123").channel);
         assert_eq!(json.differs_as(&cbor), Some(("encoding", "json", "cbor")));
         assert_eq!(json.differs_as(&json), None);
     }

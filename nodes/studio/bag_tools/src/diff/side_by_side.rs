@@ -9,7 +9,7 @@ use grainlab_console::Failure;
 use grainlab_msgs::{Topic, topics};
 use grainlab_recordings::{ChannelInfo, Message, Recording, Selection};
 use serde::Serialize;
-use std::collections::{HashMap, HashSet, VecDeque};
+use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
 use std::hash::{BuildHasher, RandomState};
 use std::sync::Arc;
 
@@ -29,13 +29,27 @@ pub(super) struct Compared {
 }
 
 /// A topic of one recording or both.
-pub(super) struct Pair<'a> {
-    pub(super) name: &'a str,
+#[derive(Default)]
+pub(super) struct Pair {
+    name: String,
     /// Its channel in A and in B.
-    pub(super) channels: [Option<&'a Arc<ChannelInfo>>; 2],
+    pub(super) channels: [Option<Arc<ChannelInfo>>; 2],
 }
 
-impl Pair<'_> {
+/// The wanted topics of both recordings, by name.
+pub(super) fn pairs(both: &[Recording; 2], wanted: impl Fn(&ChannelInfo) -> bool) -> Vec<Pair> {
+    let mut pairs = BTreeMap::<String, Pair>::new();
+    for (side, recording) in both.iter().enumerate() {
+        for channel in recording.channels().into_iter().filter(|channel| wanted(channel)) {
+            let pair = pairs.entry(channel.topic.clone()).or_default();
+            pair.name.clone_from(&channel.topic);
+            pair.channels[side] = Some(channel);
+        }
+    }
+    pairs.into_values().collect()
+}
+
+impl Pair {
     /// Returns the topic of the laboratory, if it is one.
     pub(super) fn contract(&self) -> Option<&'static Topic> {
         self.channels.iter().flatten().find_map(|c| Topic::of_channel(&c.topic, &c.ros_type))
@@ -67,11 +81,11 @@ struct Progress {
 ///
 /// # Errors
 /// Returns an error if a recording lacks a topic that it was said to have.
-pub(super) fn compare(both: &[Recording; 2], pairs: &[Pair<'_>]) -> Result<Vec<Compared>, Failure> {
+pub(super) fn compare(both: &[Recording; 2], pairs: &[Pair]) -> Result<Vec<Compared>, Failure> {
     compare_within(both, pairs, MAX_WAITING_BYTES)
 }
 
-fn compare_within(both: &[Recording; 2], pairs: &[Pair<'_>], most: usize) -> Result<Vec<Compared>, Failure> {
+fn compare_within(both: &[Recording; 2], pairs: &[Pair], most: usize) -> Result<Vec<Compared>, Failure> {
     // Estimates are sorted first, all of a topic.
     let alone = pairs.len() > 1 && pairs.iter().any(Pair::is_estimates);
     if !alone && let Some(rows) = one_pass(both, pairs, most)? {
@@ -84,13 +98,9 @@ fn compare_within(both: &[Recording; 2], pairs: &[Pair<'_>], most: usize) -> Res
 }
 
 /// Compares in one pass; returns `None` if more than `most` bytes of several topics would wait.
-fn one_pass(
-    both: &[Recording; 2],
-    pairs: &[Pair<'_>],
-    most: usize,
-) -> Result<Option<Vec<Compared>>, Failure> {
+fn one_pass(both: &[Recording; 2], pairs: &[Pair], most: usize) -> Result<Option<Vec<Compared>>, Failure> {
     let messages = |side: usize| {
-        let here = pairs.iter().filter(|pair| pair.channels[side].is_some()).map(|pair| pair.name);
+        let here = pairs.iter().filter(|pair| pair.channels[side].is_some()).map(|pair| &pair.name);
         let all = both[side].messages(&Selection::topics(here)).map_err(Failure::failed)?;
         Ok::<Box<dyn Iterator<Item = Message>>, Failure>(match pairs {
             [one] if one.is_estimates() => Box::new(by_source(all.collect())),
@@ -99,7 +109,7 @@ fn one_pass(
     };
     let mut sources = [messages(0)?, messages(1)?];
     let hashes = [RandomState::new(), RandomState::new()];
-    let places: HashMap<&str, usize> = pairs.iter().enumerate().map(|(n, pair)| (pair.name, n)).collect();
+    let places: HashMap<&str, usize> = pairs.iter().enumerate().map(|(n, pair)| (&*pair.name, n)).collect();
     let mut all: Vec<Progress> = pairs.iter().map(Progress::new).collect();
     // Bytes that wait, and the number of messages of each recording that do.
     let (mut bytes, mut waiting, mut ended) = (0usize, [0usize; 2], [false; 2]);
@@ -141,9 +151,9 @@ fn one_pass(
 }
 
 impl Progress {
-    fn new(pair: &Pair<'_>) -> Self {
+    fn new(pair: &Pair) -> Self {
         let row = Compared {
-            topic: pair.name.to_owned(),
+            topic: pair.name.clone(),
             messages: [0; 2],
             payload: "same",
             same_times: true,
@@ -178,33 +188,18 @@ impl Progress {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mcap::records::MessageHeader;
     use std::time::{Duration, Instant};
 
-    /// A recording of messages: topic and payload, at increasing times.
+    /// A recording of messages: topic and payload.
     fn recording(messages: impl IntoIterator<Item = (String, Vec<u8>)>) -> Recording {
-        let file = tempfile::NamedTempFile::new().unwrap();
-        let buffer = std::io::BufWriter::new(file.reopen().unwrap());
-        let mut writer = mcap::Writer::new(buffer).unwrap();
-        for (log_time, (topic, payload)) in (0..).zip(messages) {
-            let channel_id = writer.add_channel(0, &topic, "json", &Default::default()).unwrap();
-            let header = MessageHeader { channel_id, sequence: 0, log_time, publish_time: 1 };
-            writer.write_to_known_channel(&header, &payload).unwrap();
-        }
-        writer.finish().unwrap();
-        Recording::open(file.path()).unwrap()
+        crate::testing::recording(
+            messages.into_iter().map(|(topic, payload)| (topic, "json", [""; 2], payload)),
+        )
     }
 
     /// The number of messages, the first difference, and whether times are the same, for each topic.
     fn compared(both: &[Recording; 2], most: usize) -> Vec<(String, [usize; 2], Option<String>, bool)> {
-        let channels = both.each_ref().map(Recording::channels);
-        let find = |side: usize, name: &str| channels[side].iter().find(|c| c.topic == name);
-        let mut names: Vec<&str> = channels.iter().flatten().map(|c| c.topic.as_str()).collect();
-        names.sort_unstable();
-        names.dedup();
-        let pairs: Vec<Pair<'_>> =
-            names.into_iter().map(|name| Pair { name, channels: [find(0, name), find(1, name)] }).collect();
-        let rows = compare_within(both, &pairs, most).unwrap();
+        let rows = compare_within(both, &pairs(both, |_| true), most).unwrap();
         rows.into_iter().map(|r| (r.topic, r.messages, r.first_difference, r.same_times)).collect()
     }
 
@@ -230,13 +225,7 @@ mod tests {
         for most in [0, 9, 20, MAX_WAITING_BYTES] {
             assert_eq!(compared(&both, most), expected, "{most}");
         }
-        assert!(one_pass(&both, &pairs_of(&both), 9).unwrap().is_none(), "more than 9 bytes wait");
-    }
-
-    fn pairs_of(both: &[Recording; 2]) -> Vec<Pair<'static>> {
-        let [a, b] = both.each_ref().map(|r| -> &'static [Arc<ChannelInfo>] { r.channels().leak() });
-        let of_b = |name: &str| b.iter().find(|c| c.topic == name);
-        a.iter().map(|c| Pair { name: &c.topic, channels: [Some(c), of_b(&c.topic)] }).collect()
+        assert!(one_pass(&both, &pairs(&both, |_| true), 9).unwrap().is_none(), "more than 9 bytes wait");
     }
 
     /// A time that is proportional to the number of topics is a second of computing; one that grows with its square is minutes.
@@ -245,11 +234,7 @@ mod tests {
         let all = || (0..10_000).map(|n| (format!("/t{n}"), b"1".to_vec()));
         let both = [recording(all()), recording(all())];
         let begin = Instant::now();
-        let channels = both.each_ref().map(Recording::channels);
-        let pairs: Vec<Pair<'_>> = std::iter::zip(&channels[0], &channels[1])
-            .map(|(a, b)| Pair { name: &a.topic, channels: [Some(a), Some(b)] })
-            .collect();
-        let rows = compare(&both, &pairs).unwrap();
+        let rows = compare(&both, &pairs(&both, |_| true)).unwrap();
         assert!(
             rows.len() == 10_000 && rows.iter().all(|r| r.messages == [1, 1] && r.first_difference.is_none())
         );

@@ -1,7 +1,7 @@
 //! Tables as CSV files: fields as `stress.xx`, short arrays as `rate[0]`.
 
-use super::shape::{MOST_COLUMNS, Shape, time_columns};
 use crate::appended::Appended;
+use crate::shape::{MOST_COLUMNS, Shape, time_columns};
 use grainlab_any_message::{Array, Message, Value};
 use std::io;
 use std::path::Path;

@@ -1,7 +1,9 @@
-//! Space that is reserved ahead of what is written, so that a disk that others fill leaves room for the end of a recording.
+//! Space on the disk: how much is free, and space that is reserved ahead of what is written, so that a disk that others fill leaves
+//! room for the end of a recording.
 
 use std::fs::File;
 use std::io;
+use std::path::Path;
 
 use rustix::fs::{FallocateFlags, fallocate};
 use rustix::io::{Errno, retry_on_intr};
@@ -50,4 +52,13 @@ impl Drop for Reserve {
         // Space that stays reserved is no fault of the recording.
         let _ = self.file.metadata().and_then(|file| self.file.set_len(file.len()));
     }
+}
+
+/// Free bytes for an ordinary user on the file system of `path`.
+///
+/// # Errors
+/// If `path` does not exist or the call fails.
+pub(super) fn free_space(path: &Path) -> io::Result<u64> {
+    let answer = rustix::fs::statvfs(path)?;
+    Ok(answer.f_bavail.saturating_mul(answer.f_frsize))
 }
