@@ -4,6 +4,7 @@ use super::laboratory::{DENSITY, PACKING, Sample, Wave, medium};
 use grainlab_core::{TransverseIsotropy, WaveSpeed};
 use grainlab_emt::{Conditions, Measured, Modulus, christoffel};
 use grainlab_testkit::Random;
+use grainlab_testkit::packings::mode_nearest;
 use nalgebra::{DMatrix, Dyn, Rotation3, SVD};
 
 const WAVES: [Wave; 10] = [
@@ -204,7 +205,7 @@ fn equivalent_directions_average_to_the_projection_on_an_isotropic_plane() {
             .iter()
             .flat_map(|wave| [0.0, 45.0, 90.0, 135.0].map(|azimuth| sample.nominal(*wave, azimuth)))
             .map(|(direction, polarization)| {
-                let modulus = stiffness.plane_waves(&direction).meant_by(&polarization).modulus;
+                let (modulus, _) = mode_nearest(&stiffness, &direction, &polarization);
                 WaveSpeed { direction, polarization, speed: (modulus / DENSITY).sqrt(), stddev: None }
             })
             .collect();
