@@ -37,6 +37,14 @@ pub fn taken_up(packing: &Packing, setting: EngineSettings) -> Engine {
     ready(Engine::from_packing(packing, setting).unwrap_or_else(|e| panic!("an engine: {e}")))
 }
 
+/// Returns grains of these radii (m) at random places, with a solid fraction of 0.35 and random velocities of root mean square
+/// `speed` (m/s).
+pub fn gas(radii: &[f64], speed: f64, seed: u64) -> Packing {
+    let gas = grainlab_dem::gas::random_placement(radii, 0.35, speed, seed);
+    let gas = gas.unwrap_or_else(|e| panic!("a gas: {e}"));
+    Packing { velocities: gas.velocities, ..Packing::at_rest(gas.cell, radii.to_vec(), gas.positions) }
+}
+
 fn ready(mut engine: Engine) -> Engine {
     engine.initialise().unwrap_or_else(|e| panic!("an engine: {e}"));
     engine

@@ -43,6 +43,13 @@ pub fn cubic(c11: f64, c12: f64, c44: f64) -> Stiffness {
     }))
 }
 
+/// Returns ρ v² of the mode along `direction` whose motion is nearest to `motion`, Pa, and cos² of the angle between the two.
+pub fn mode_nearest(stiffness: &Stiffness, direction: &Vec3, motion: &Vec3) -> (f64, f64) {
+    let waves = stiffness.plane_waves(direction);
+    let modes = waves.moduli.into_iter().zip(waves.polarizations.map(|p| p.dot(motion).powi(2)));
+    modes.reduce(|a, b| if b.1 > a.1 { b } else { a }).unwrap_or_default()
+}
+
 /// Grains i and j, and the image of j, of each contact.
 pub type Keys = Vec<(u32, u32, [i8; 3])>;
 

@@ -92,9 +92,9 @@ pub fn unequal_spheres(packing: &Packing, stress: &[f64; 6]) -> Vec<Row> {
 /// The packing with contacts and forces of the engine, from positions alone.
 fn from_positions(packing: &Packing) -> Result<Packing, VerificationError> {
     let settings = EngineSettings { friction: packing.friction, ..EngineSettings::default() };
-    let (radii, positions) = (packing.radii.clone(), &packing.positions);
-    let mut engine =
-        Engine::new(packing.cell, packing.material, radii, positions, settings)?.with_law(packing.law)?;
+    let at_rest = Packing::at_rest(packing.cell, packing.radii.clone(), packing.positions.clone());
+    let grains = Packing { material: packing.material, law: packing.law, ..at_rest };
+    let mut engine = Engine::from_packing(&grains, settings)?;
     engine.initialise()?;
     Ok(engine.packing(Mat3::identity()))
 }

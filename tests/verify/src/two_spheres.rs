@@ -2,7 +2,7 @@
 
 use crate::error::VerificationError;
 use grainlab_core::contact::{ContactLaw, TangentialLaw};
-use grainlab_core::{Cell, Mat3, Material, Vec3};
+use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
 
 /// Radius of the sphere that stands for a plane, over that of the sphere that meets it. R* is then 1e-5 below that of a plane,
@@ -113,12 +113,14 @@ impl TwoSpheres {
             skin: 0.1 * self.radii[0].min(self.radii[1]),
             ..EngineSettings::default()
         };
-        let engine = Engine::new(cell, self.material, self.radii.to_vec(), &self.positions, settings)?;
-        let mut engine = engine.with_law(self.law)?;
-        engine.set_velocities(&self.velocities)?;
-        if self.friction > 0.0 {
-            engine.set_spins(&self.spins)?;
-        }
+        let packing = Packing {
+            material: self.material,
+            law: self.law,
+            velocities: self.velocities.to_vec(),
+            spins: self.spins.to_vec(),
+            ..Packing::at_rest(cell, self.radii.to_vec(), self.positions.to_vec())
+        };
+        let mut engine = Engine::from_packing(&packing, settings)?;
         engine.initialise()?;
         Ok(engine)
     }

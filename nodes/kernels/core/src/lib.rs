@@ -60,4 +60,4 @@ pub use rattlers::{backbone, min_contacts, non_rattlers};
 pub use stiffness::{Stiffness, TransverseIsotropy};
 pub use symmetry::{Symmetry, SymmetryClass, symmetry};
 pub use tensor::{Mat3, SymTensor, Vec3};
-pub use waves::{MeasuredWave, PlaneWaves, WaveMethod, WaveMode, WaveSpeed};
+pub use waves::{MeasuredWave, PlaneWaves, WaveMethod, WaveSpeed};

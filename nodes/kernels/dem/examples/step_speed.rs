@@ -1,12 +1,12 @@
 //! Time of a step per grain of a compressed packing, ns: to compare two builds on one machine, or contact laws: `step_speed
 //! rough:1e-8,1`.
 
-use grainlab_core::Material;
+use grainlab_core::Packing;
 use grainlab_core::contact::ContactLaw;
 use grainlab_dem::{Engine, EngineSettings, TimeStep, gas};
 use std::time::Instant;
 
-const GRAINS: u32 = 2000;
+const GRAINS: usize = 2000;
 const RADIUS: f64 = 1e-4;
 
 fn main() -> Result<(), grainlab_core::contact::UnknownLaw> {
@@ -19,11 +19,11 @@ fn main() -> Result<(), grainlab_core::contact::UnknownLaw> {
             time_step: TimeStep::FractionOfStable(0.5),
             ..EngineSettings::default()
         };
-        let gas = gas::random_sequential_addition(GRAINS, 2.0 * RADIUS, 0.35, 0.1, 7).unwrap();
-        let radii = vec![RADIUS; GRAINS as usize];
-        let engine = Engine::new(gas.cell, Material::GLASS, radii, &gas.positions, settings).unwrap();
-        let mut engine = engine.with_law(law).unwrap();
-        engine.set_velocities(&gas.velocities).unwrap();
+        let radii = vec![RADIUS; GRAINS];
+        let gas = gas::random_placement(&radii, 0.35, 0.1, 7).unwrap();
+        let velocities = gas.velocities;
+        let packing = Packing { law, velocities, ..Packing::at_rest(gas.cell, radii, gas.positions) };
+        let mut engine = Engine::from_packing(&packing, settings).unwrap();
         engine.set_rate(&[-900.0, -1100.0, -1000.0, 0.0, 0.0, 0.0]).unwrap();
         engine.sort_spatially();
         engine.initialise().unwrap();
@@ -36,7 +36,7 @@ fn main() -> Result<(), grainlab_core::contact::UnknownLaw> {
         for _ in 0..40 {
             let start = Instant::now();
             engine.run(200).unwrap();
-            best = best.min(start.elapsed().as_secs_f64() / 200.0 / f64::from(GRAINS));
+            best = best.min(start.elapsed().as_secs_f64() / 200.0 / GRAINS as f64);
         }
         let coordination = engine.observables().unwrap().coordination;
         println!(

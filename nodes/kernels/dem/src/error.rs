@@ -88,9 +88,6 @@ pub enum DemError {
     /// Parameters of a contact law out of their range.
     #[error(transparent)]
     Law(#[from] UnknownLaw),
-    /// A contact law that replaces the one that contacts already have.
-    #[error("the contact law of an engine with contacts, or after its first step, cannot be replaced")]
-    LawInUse,
     /// An engine without grains.
     #[error("there are no grains")]
     NoGrains,

@@ -1,9 +1,9 @@
 //! The running energy balance.
 
 use grainlab_core::contact::{ContactLaw, Linear, RollingResistance, SpringLaw, TangentialLaw};
-use grainlab_core::{Cell, Mat3, Material, Vec3};
-use grainlab_dem::{Compute, EnergyBalance, Engine, EngineSettings, Simd, TimeStep, gas};
-use grainlab_testkit::engine::{RADIUS, setting};
+use grainlab_core::{Cell, Packing, Vec3};
+use grainlab_dem::{Compute, EnergyBalance, Engine, EngineSettings, Simd, TimeStep};
+use grainlab_testkit::engine::{RADIUS, gas, packing, setting, taken_up};
 
 /// As stiff as glass at some 100 kPa.
 const LINEAR: SpringLaw = SpringLaw::Linear(Linear { normal_stiffness: 2e5, stiffness_ratio: 0.5 });
@@ -48,17 +48,11 @@ const CHANNELS: [(&str, Channel); 14] = [
 
 /// A gas that is compressed and sheared into contact.
 fn pressed(law: ContactLaw, settings: EngineSettings) -> Engine {
-    let gas = gas::random_sequential_addition(40, 2.0 * RADIUS, 0.35, 0.1, 5).unwrap();
     // With resistance to rolling, sizes differ.
     let small = if law.rolling.is_some() { 0.8 * RADIUS } else { RADIUS };
     let radii = (0..40).map(|k| if k % 3 == 0 { small } else { RADIUS }).collect();
-    let mut e = Engine::new(gas.cell, Material::GLASS, radii, &gas.positions, settings)
-        .unwrap()
-        .with_law(law)
-        .unwrap();
-    e.set_velocities(&gas.velocities).unwrap();
+    let mut e = taken_up(&Packing { law, radii, ..gas(&[RADIUS; 40], 0.1, 5) }, settings);
     e.set_rate(&[-150.0, -140.0, -160.0, 10.0, -5.0, 20.0]).unwrap();
-    e.initialise().unwrap();
     e
 }
 
@@ -108,7 +102,7 @@ fn the_balance_changes_nothing() {
             plain.run(50).unwrap();
             measured.run(50).unwrap();
         }
-        assert_eq!(plain.packing(Mat3::identity()), measured.packing(Mat3::identity()));
+        assert_eq!(packing(&plain), packing(&measured));
         let b = measured.energy().unwrap();
         assert_eq!(b.thermostat > 0.0, settings.thermostat_speed.is_some());
         assert!(b.relative_residual().abs() < 1e-9, "{b:?}");
@@ -121,12 +115,11 @@ fn the_balance_changes_nothing() {
 fn collision(law: ContactLaw, steps: u32) -> EnergyBalance {
     let settings = setting(f64::INFINITY, 2e-7 / f64::from(steps));
     let cell = Cell::cube(20.0 * RADIUS).unwrap();
-    let x = [Vec3::zeros(), Vec3::x() * (2.0 * RADIUS)];
-    let mut e =
-        Engine::new(cell, Material::GLASS, vec![RADIUS; 2], &x, settings).unwrap().with_law(law).unwrap();
-    e.set_velocities(&[Vec3::new(0.05, 0.03, 0.0), Vec3::new(-0.05, 0.0, 0.02)]).unwrap();
-    e.set_spins(&[Vec3::y() * 50.0, Vec3::y() * -50.0]).unwrap();
-    e.initialise().unwrap();
+    let x = vec![Vec3::zeros(), Vec3::x() * (2.0 * RADIUS)];
+    let velocities = vec![Vec3::new(0.05, 0.03, 0.0), Vec3::new(-0.05, 0.0, 0.02)];
+    let spins = vec![Vec3::y() * 50.0, Vec3::y() * -50.0];
+    let pair = Packing { law, velocities, spins, ..Packing::at_rest(cell, vec![RADIUS; 2], x) };
+    let mut e = taken_up(&pair, settings);
     e.measure_energy(true);
     e.run(steps).unwrap();
     e.energy().unwrap()

@@ -5,10 +5,10 @@ use grainlab_core::contact::{
     SpringLaw,
 };
 use grainlab_core::lanes::LaneVec3;
-use grainlab_core::{Mat3, Vec3};
+use grainlab_core::{Packing, Vec3};
 use grainlab_dem::Engine;
 use grainlab_testkit::Random;
-use grainlab_testkit::engine::{GLASS, RADIUS, box_of, setting};
+use grainlab_testkit::engine::{GLASS, RADIUS, box_of, packing, setting, taken_up};
 use nalgebra::{Rotation3, Unit};
 
 const R_EFF: f64 = 0.5 * RADIUS;
@@ -119,19 +119,17 @@ fn pressed_row(springs: SpringLaw, damping: f64, spin: f64, dt: f64) -> Engine {
     let law = ContactLaw::of(springs).with_rolling(resistance(damping));
     let length = 2.0 * (2.0 * RADIUS - OVERLAP);
     let cell = box_of(length, 20.0 * RADIUS, 20.0 * RADIUS);
-    let x = [Vec3::zeros(), Vec3::x() * (0.5 * length)];
-    let mut e =
-        Engine::new(cell, GLASS, vec![RADIUS; 2], &x, setting(0.5, dt)).unwrap().with_law(law).unwrap();
-    e.set_spins(&[Vec3::y() * spin, Vec3::y() * -spin]).unwrap();
-    e.initialise().unwrap();
-    e
+    let x = vec![Vec3::zeros(), Vec3::x() * (0.5 * length)];
+    let spins = vec![Vec3::y() * spin, Vec3::y() * -spin];
+    let pair = Packing { law, spins, ..Packing::at_rest(cell, vec![RADIUS; 2], x) };
+    taken_up(&pair, setting(0.5, dt))
 }
 
 const OVERLAP: f64 = 4e-8;
 const SPRINGS: &[SpringLaw] = &SpringLaw::EXAMPLES;
 
 fn spins(e: &Engine) -> [f64; 2] {
-    let p = e.packing(Mat3::identity());
+    let p = packing(e);
     assert!(p.contacts.iter().all(|c| c.tangential_force.norm() < 1e-9 * c.normal_force), "no slip");
     [p.spins[0].y, p.spins[1].y]
 }

@@ -1,9 +1,9 @@
 //! Results do not depend on instruction set, threads, or how steps are grouped.
 
 use grainlab_core::contact::{ContactLaw, RollingResistance, SpringLaw, TangentialLaw};
-use grainlab_core::{Contact, Mat3, Material, Vec3};
-use grainlab_dem::{Compute, Engine, EngineSettings, Simd, TimeStep, gas};
-use grainlab_testkit::engine::{self, RADIUS, bits, packing};
+use grainlab_core::{Contact, Packing, Vec3};
+use grainlab_dem::{Compute, Engine, EngineSettings, Simd, TimeStep};
+use grainlab_testkit::engine::{self, RADIUS, bits, gas, packing};
 
 /// Grains enough for several threads to have something to do: more than two of the parts that they work on.
 const PARTS: u32 = 4500;
@@ -21,14 +21,12 @@ fn rolling(springs: SpringLaw) -> ContactLaw {
 
 /// A gas that is strained into contact; `unequal` mixes sizes.
 fn start(grains: u32, law: ContactLaw, setting: EngineSettings, unequal: bool, compute: Compute) -> Engine {
-    let gas = gas::random_sequential_addition(grains, 2.0 * RADIUS, 0.35, 0.2, 7).unwrap();
+    let gas = gas(&vec![RADIUS; grains as usize], 0.2, 7);
     let radius = |i: u32| if unequal && i.is_multiple_of(3) { 0.8 * RADIUS } else { RADIUS };
     let radii = (0..grains).map(radius).collect();
-    let engine = Engine::new(gas.cell, Material::GLASS, radii, &gas.positions, setting).unwrap();
-    let mut engine = engine.with_law(law).unwrap();
+    let spins = gas.velocities.iter().map(|v| v.cross(&Vec3::x()) * 1e4).collect();
+    let mut engine = Engine::from_packing(&Packing { law, radii, spins, ..gas }, setting).unwrap();
     engine.set_compute(compute);
-    engine.set_velocities(&gas.velocities).unwrap();
-    engine.set_spins(&gas.velocities.iter().map(|v| v.cross(&Vec3::x()) * 1e4).collect::<Vec<_>>()).unwrap();
     engine.set_rate(&[-900.0, -1100.0, -1000.0, 60.0, -50.0, 90.0]).unwrap();
     engine.sort_spatially();
     engine.initialise().unwrap();
@@ -214,7 +212,7 @@ fn kicked_grains_go_on_as_if_they_had_been_that_fast() {
         set.set_velocities(&velocities).unwrap();
         kicked.run(20).unwrap();
         set.run(20).unwrap();
-        assert_eq!(kicked.packing(Mat3::identity()), set.packing(Mat3::identity()));
+        assert_eq!(packing(&kicked), packing(&set));
         let mut without = start(PARTS, ContactLaw::default(), setting, false, Compute::default());
         without.run(27).unwrap();
         assert_ne!(kicked.velocities(), without.velocities());

@@ -8,14 +8,6 @@ pub enum MicroError {
     /// Numbers that are no packing.
     #[error(transparent)]
     Packing(#[from] grainlab_core::PackingError),
-    /// A network and a packing that do not belong together.
-    #[error("the network has {network} contacts, and the packing {packing}")]
-    OtherPacking {
-        /// Contacts of the network.
-        network: usize,
-        /// Contacts of the packing.
-        packing: usize,
-    },
     /// Loads that are not one for each grain.
     #[error("the network has {grains} grains, and there are {loads} loads: give one for each grain")]
     Loads {
@@ -128,11 +120,7 @@ impl MicroError {
             | Self::OutOfBounds { .. }
             | Self::HeldOnly { .. } => true,
             Self::Probe(error) => !matches!(error, ProbeError::Setting { .. }),
-            Self::Packing(_)
-            | Self::OtherPacking { .. }
-            | Self::Loads { .. }
-            | Self::Setting { .. }
-            | Self::Normal { .. } => false,
+            Self::Packing(_) | Self::Loads { .. } | Self::Setting { .. } | Self::Normal { .. } => false,
         }
     }
 }

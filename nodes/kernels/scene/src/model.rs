@@ -178,23 +178,6 @@ impl PhaseKind {
             Self::Servo { rate_limit, .. } => Some(*rate_limit),
         }
     }
-
-    /// Multiplies every strain rate, and the limit of one, by `factor`.
-    pub fn scale_rates(&mut self, factor: f64) {
-        match self {
-            Self::Gas { rate, .. } => *rate *= factor,
-            Self::Relax => {}
-            Self::Strain { rate } => rate.iter_mut().for_each(|r| *r *= factor),
-            Self::Servo { controls, rate_limit, .. } => {
-                *rate_limit *= factor;
-                for control in controls {
-                    if let ComponentControl::StrainRate(rate) = control {
-                        *rate *= factor;
-                    }
-                }
-            }
-        }
-    }
 }
 
 /// Method by which the grains of a gas collide.

@@ -15,10 +15,10 @@ mod requirements;
 mod sample;
 mod student;
 
+pub use discrepancy::discrepancies;
 pub use requirements::{check, packings};
 pub use sample::CalibrationSample;
 
-use discrepancy::discrepancies;
 use grainlab_core::Material;
 use grainlab_emt::{Calibration, CalibrationError};
 use isotropic::of_isotropic;
@@ -44,18 +44,6 @@ pub fn learn(
         calibration.network = Some(Box::new(network(&all)?));
         calibration.discrepancies = discrepancies(&all, &calibration);
     }
-    Ok(calibration)
-}
-
-/// These constants, with the errors that the models have with them on these packings.
-pub fn with_errors(
-    constants: &Calibration,
-    samples: &[CalibrationSample],
-) -> Result<Calibration, CalibrationError> {
-    samples.iter().try_for_each(CalibrationSample::check)?;
-    let all: Vec<&CalibrationSample> = samples.iter().collect();
-    let mut calibration = constants.clone();
-    calibration.discrepancies = discrepancies(&all, constants);
     Ok(calibration)
 }
 

@@ -1,6 +1,7 @@
 //! Settings of a scene that are varied, their values, and their most accurate value.
 
 use clap::ValueEnum;
+use grainlab_core::ComponentControl;
 use grainlab_scene::{Phase, PhaseKind, Scene};
 
 /// A setting. Every value is a factor on that of the scene, so that the unchanged scene is the default of every
@@ -93,7 +94,7 @@ impl VariedSetting {
                 Some(phase.damping)
             }
             _ => {
-                phase.kind.scale_rates(factor);
+                scale_rates(&mut phase.kind, factor);
                 // A slower path needs the longer time; a faster one fails no later.
                 phase.until.timeout *= (1.0 / factor).max(1.0);
                 match phase.kind {
@@ -126,6 +127,23 @@ fn is_gas(phase: &Phase) -> bool {
 pub(super) fn converged(scene: &Scene, quick: bool) -> Scene {
     let scaled = |s: Scene, setting: &VariedSetting| setting.scaled(&s, setting.factors(quick).1).0;
     VariedSetting::value_variants().iter().fold(scene.clone(), scaled)
+}
+
+/// Multiplies every strain rate, and the limit of one, by `factor`.
+fn scale_rates(kind: &mut PhaseKind, factor: f64) {
+    match kind {
+        PhaseKind::Gas { rate, .. } => *rate *= factor,
+        PhaseKind::Relax => {}
+        PhaseKind::Strain { rate } => rate.iter_mut().for_each(|r| *r *= factor),
+        PhaseKind::Servo { controls, rate_limit, .. } => {
+            *rate_limit *= factor;
+            for control in controls {
+                if let ComponentControl::StrainRate(rate) = control {
+                    *rate *= factor;
+                }
+            }
+        }
+    }
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use grainlab_acoustics::{
 };
 use grainlab_core::{Stiffness, Vec3};
 use grainlab_emt::{Conditions, Measured, Modulus, christoffel};
+use grainlab_testkit::packings::mode_nearest;
 
 /// ρ v² from the stiffness for the direction and polarization of this curve, Pa.
 fn modulus(c: &Stiffness, curve: &DispersionCurve) -> f64 {
@@ -72,9 +73,9 @@ fn without_an_axis_every_mode_is_measured_as_it_is() {
     assert_eq!((m.curves.len(), m.axis), (39, None));
     let c = stiffness(&packing);
     for curve in &m.curves {
-        let mode = c.plane_waves(&curve.direction).meant_by(&curve.polarization);
-        assert!(mode.share > 1.0 - 1e-4, "{curve:?} {mode:?}");
-        let error = (m.density * curve.speed.powi(2) / mode.modulus - 1.0).abs();
+        let (modulus, share) = mode_nearest(&c, &curve.direction, &curve.polarization);
+        assert!(share > 1.0 - 1e-4, "{share} {curve:?}");
+        let error = (m.density * curve.speed.powi(2) / modulus - 1.0).abs();
         assert!(error < 1e-4, "{error:e} {curve:?}");
     }
 }

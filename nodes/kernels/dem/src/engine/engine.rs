@@ -38,7 +38,8 @@ pub struct Engine {
 }
 
 impl Engine {
-    /// Grains at rest at `positions` (m), without contact history. Their contact law is the default, Hertz–Mindlin.
+    /// Grains at rest at `positions` (m), without contact history. Their contact law is the default, Hertz–Mindlin; for others,
+    /// see [`Engine::from_packing`].
     ///
     /// # Errors
     /// Arrays of different lengths, numbers out of their range, no grains. [`Engine::initialise`] finds overlaps beyond
@@ -56,19 +57,6 @@ impl Engine {
             ..Packing::at_rest(cell, radii, positions.to_vec())
         };
         Self::from_packing(&at_rest, settings)
-    }
-
-    /// Sets another contact law, before the first step.
-    ///
-    /// # Errors
-    /// A law with parameters out of their range, and an engine with contacts or forces.
-    pub fn with_law(mut self, law: ContactLaw) -> Result<Self, DemError> {
-        ContactLaw::new(law.name(), &law.parameters())?;
-        if self.has_forces || self.contacts.touching().next().is_some() {
-            return Err(DemError::LawInUse);
-        }
-        self.state.law = law;
-        Ok(self)
     }
 
     /// Grains as they are in `packing`, contact law and history included.

@@ -9,4 +9,4 @@ mod grid;
 mod placement;
 
 pub use event_driven::spheres::{Collisions, HardSpheres, mean_free_time};
-pub use placement::{Gas, random_placement, random_sequential_addition};
+pub use placement::{Gas, random_placement};

@@ -20,17 +20,6 @@ pub struct Gas {
 /// Attempts to place one grain before an error. At a solid fraction of 0.35 some tens of thousands may be needed.
 const ATTEMPTS: u32 = 200_000;
 
-/// Places `grains` spheres of `diameter` (m) as [`random_placement`] does.
-pub fn random_sequential_addition(
-    grains: u32,
-    diameter: f64,
-    solid_fraction: f64,
-    speed: f64,
-    seed: u64,
-) -> Result<Gas, DemError> {
-    random_placement(&vec![0.5 * diameter; grains as usize], solid_fraction, speed, seed)
-}
-
 /// Places spheres of these radii (m) one after the other at random without overlap (random sequential addition), which is
 /// possible up to a solid fraction of about 0.38 where they are of one size, and gives them random velocities of root mean
 /// square `speed` (m/s), of equal mean energy and without momentum. Large spheres should come first.

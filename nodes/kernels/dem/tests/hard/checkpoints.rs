@@ -126,14 +126,12 @@ fn looking_at_every_step_changes_nothing() {
 /// Expected: in a gas the thermostat and the time step that goes with it are part of the state, too.
 #[test]
 fn an_agitated_gas_saved_and_loaded_goes_on_bit_for_bit() {
-    let gas = grainlab_dem::gas::random_sequential_addition(40, 2.0 * RADIUS, 0.35, 0.5, 9).unwrap();
+    let gas = gas(&[RADIUS; 40], 0.5, 9);
     let mut s = setting(0.0, 0.0);
     (s.time_step, s.thermostat_speed, s.damping) = (TimeStep::FractionOfStable(0.8), Some(0.5), 0.002);
     let begin = || {
-        let mut e = Engine::new(gas.cell, GLASS, vec![RADIUS; 40], &gas.positions, s).unwrap();
-        e.set_velocities(&gas.velocities).unwrap();
+        let mut e = taken_up(&gas, s);
         e.set_rate(&[-60.0, -60.0, -60.0, 0.0, 0.0, 0.0]).unwrap();
-        e.initialise().unwrap();
         e
     };
     for n in [1, 333, 4000] {

@@ -97,7 +97,7 @@ fn two_grains_collide_obliquely_with_friction_and_keep_angular_momentum() {
 /// several images at once.
 #[test]
 fn a_box_barely_above_two_diameters_is_a_box_like_any_other() {
-    let gas = grainlab_dem::gas::random_sequential_addition(5, 2.0 * RADIUS, 0.33, 5.0, 2).unwrap();
+    let gas = grainlab_dem::gas::random_placement(&[RADIUS; 5], 0.33, 5.0, 2).unwrap();
     let edge = 4.02 * RADIUS;
     let scale = edge / gas.cell.matrix()[(0, 0)];
     assert!(scale > 1.0, "placed a little closer than they are used");

@@ -3,7 +3,7 @@
 use super::laboratory::{DENSITY, PACKING, Sample, Wave};
 use grainlab_core::{Vec3, WaveSpeed};
 use grainlab_emt::christoffel::{self, ChristoffelError, SpeedFit};
-use grainlab_emt::{Conditions, Measured};
+use grainlab_emt::{Conditions, Measured, Modulus};
 use grainlab_testkit::Random;
 use nalgebra::{Rotation3, Unit};
 
@@ -100,7 +100,7 @@ fn along_the_axis_every_shear_motion_is_a_modes() {
     for (angle, tilt) in [(0.0f64, 0.0f64), (0.8, 0.0), (2.5, 0.01), (-1.2, 0.02)] {
         speeds[3].polarization = Vec3::new(angle.cos(), angle.sin(), 0.0);
         speeds[3].direction = Vec3::new(tilt.sin(), 0.0, tilt.cos());
-        let g13 = sample().fit(&speeds).unwrap().observation.moduli.get(grainlab_emt::Modulus::G13).unwrap();
+        let g13 = sample().fit(&speeds).unwrap().observation.moduli.get(Modulus::G13).unwrap();
         assert!((g13 / PACKING.g13 - 1.0).abs() < 1e-3, "{g13}");
     }
 }
@@ -164,4 +164,31 @@ fn numbers_of_absurd_scale_are_answered_or_refused() {
             assert!(fitted.observation.moduli.known().all(|(_, value)| value.is_finite()), "{fitted:?}");
         }
     }
+}
+
+/// A transducer one degree off the axis measures C33 to 0.1 %, and does not determine C13.
+#[test]
+fn a_direction_that_misses_the_axis_by_a_degree_tells_nothing_new() {
+    let sample = sample();
+    let waves = [Wave::P(1.0), Wave::P(90.0), Wave::Sh(90.0), Wave::Sv(0.0)];
+    let fitted = sample.fit(&waves.map(|w| sample.named(w, 70.0))).unwrap();
+    assert_eq!(fitted.undetermined, [Modulus::Theta, Modulus::C13]);
+    let c33 = fitted.observation.moduli.get(Modulus::C33).unwrap();
+    assert!((c33 / PACKING.c33 - 1.0).abs() < 1e-3, "{c33}");
+}
+
+/// ρ v² of a P wave at 45° is at least (C11 + C33)/4 + C44/2 plus half of their difference.
+#[test]
+fn a_speed_that_is_too_slow_for_any_c13_leaves_it_open_and_is_a_conflict() {
+    let sample = sample();
+    let axial = [Wave::P(0.0), Wave::P(90.0), Wave::Sh(90.0), Wave::Sv(0.0)];
+    let mut speeds: Vec<_> = axial.iter().map(|w| sample.named(*w, 0.0)).collect();
+    let slow = sample.named(Wave::P(45.0), 0.0);
+    speeds.push(WaveSpeed { speed: 0.8 * slow.speed, ..slow });
+    for speed in &mut speeds {
+        speed.stddev = Some(0.003 * speed.speed);
+    }
+    let fitted = sample.fit(&speeds).unwrap();
+    assert_eq!(fitted.undetermined, [Modulus::Theta, Modulus::C13]);
+    assert!(fitted.conflict.is_some_and(|c| c.sigma > 8.0), "{fitted:?}");
 }

@@ -3,7 +3,6 @@
 mod axis;
 mod departure;
 mod faults;
-mod incomplete;
 mod laboratory;
 mod noise;
 mod recovery;

@@ -5,7 +5,7 @@ use crate::model;
 use crate::sphere::{contact_density, directions, stiffness};
 use grainlab_core::results::Microstructure;
 use grainlab_core::{Material, Stiffness, Vec3};
-use grainlab_emt::{Conditions, Measured, Moduli, Modulus, StrainRatio};
+use grainlab_emt::{Conditions, Eq16Reading, Measured, Moduli, Modulus, Moments, StrainRatio};
 use std::f64::consts::PI;
 
 /// Values of ε and g: both ends and their neighbours, and values where the overlap is almost linear.
@@ -124,5 +124,17 @@ fn the_effective_medium_has_the_moduli_and_the_pressure_of_its_contacts() {
                 assert_eq!(found.known().count(), expected.known().count());
             }
         }
+    }
+}
+
+/// The printed Eqs. 13 and 16 lack a factor a in one term each: the excess is (4ε/5)(1−a) and (2ε/5)(1−a).
+#[test]
+fn printed_forms_exceed_the_corrected_ones_by_the_missing_factor() {
+    for (eps, g) in EPS.into_iter().flat_map(|eps| G.map(|g| (eps, g))) {
+        let a = Moments::new(eps, g).spin();
+        let psi1 = Eq16Reading::AsPrinted.psi1_factor(eps, g) - Eq16Reading::Corrected.psi1_factor(eps, g);
+        assert!((psi1 - 0.8 * eps * (1.0 - a)).abs() < 1e-14);
+        let bulk = Eq16Reading::AsPrinted.bulk(eps, a, g) - Eq16Reading::Corrected.bulk(eps, a, g);
+        assert!((bulk - 0.4 * eps * (1.0 - a)).abs() < 1e-14);
     }
 }

@@ -8,7 +8,6 @@ mod inversion;
 mod posterior;
 mod prior;
 mod propagation;
-mod quadrature;
 mod recovery;
 mod relaxed;
 mod rock_physics;

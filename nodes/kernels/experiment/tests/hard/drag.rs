@@ -24,10 +24,9 @@ fn left(e: &mut Engine) -> f64 {
 #[test]
 fn a_pressure_due_to_drag_vanishes_at_rest_and_shows_in_the_unbalanced_force() {
     for seed in 1..4 {
-        let gas = grainlab_dem::gas::random_sequential_addition(60, 2.0 * RADIUS, 0.35, 0.0, seed).unwrap();
         let mut s = setting(0.1, 0.0);
         (s.time_step, s.drag, s.spin_drag) = (TimeStep::FractionOfStable(0.8), DRAG, DRAG);
-        let mut e = engine(gas.cell, GLASS, &[RADIUS; 60], &gas.positions, s);
+        let mut e = taken_up(&gas(&[RADIUS; 60], 0.0, seed), s);
         e.set_rate(&[-1000.0, -1000.0, -1000.0, 0.0, 0.0, 0.0]).unwrap();
         while e.observables().unwrap().solid_fraction < 0.52 {
             e.step().unwrap();

@@ -1,11 +1,8 @@
 //! Conjugate gradients on the sweeps of a network, in one precision.
 
-use super::gauss_seidel::{Rows, Sweeps, add_products, load, still, store};
-#[cfg(target_arch = "x86_64")]
-use super::lanes::Avx2;
-use super::lanes::{Lanes, Plain, Real, WIDTH};
+use super::gauss_seidel::{Rows, Sweeps, add_products, still};
+use super::lanes::{Real, WIDTH, add, mul_add};
 use grainlab_core::instruction_sets::{Work, with_avx2};
-use std::marker::PhantomData;
 
 /// The vectors of the conjugate gradients, one entry per grain, in the order of the sweeps.
 #[derive(Debug)]
@@ -43,11 +40,16 @@ impl<'a, T: Real, const G: bool> Descent<'a, T, G> {
         }
     }
 
+    /// [`Descent::descend`] with the widest vectors that the processor has. All processors give the same bits.
+    pub(crate) fn run(&mut self, goal: &Goal) -> u32 {
+        with_avx2(Run { descent: self, goal }).unwrap_or_else(Run::run)
+    }
+
     /// Iterates from the residual r in `rest`, with the squared norms `squares`, until that of every column
     /// is at most its target, or `limit` iterations are done. Leaves the x with K x ≈ r in `motion`. Returns
     /// the number of iterations.
     #[inline(always)]
-    fn descend<V: Lanes<T = T>>(&mut self, v: V, goal: &Goal) -> u32 {
+    fn descend(&mut self, goal: &Goal) -> u32 {
         let Goal { squares, targets, limit, growth } = goal;
         let mut far = [false; WIDTH];
         for l in 0..WIDTH {
@@ -55,8 +57,8 @@ impl<'a, T: Real, const G: bool> Descent<'a, T, G> {
         }
         self.motion.fill(still());
         self.step.fill(still());
-        self.sweeps.forward(v, &mut self.rest);
-        let mut rho = self.weigh(v);
+        self.sweeps.forward(&mut self.rest);
+        let mut rho = self.weigh();
         let (mut alpha, mut beta) = ([0.0; WIDTH], [0.0; WIDTH]);
         // Squared norm of the residual r over ρ = r̂ᵀ D r̂, at the last check.
         let mut share = ratios(squares, &rho);
@@ -64,8 +66,8 @@ impl<'a, T: Real, const G: bool> Descent<'a, T, G> {
         self.lost_after = None;
         let mut done = *limit;
         for iteration in 0..*limit {
-            let mut energy = self.back(v, &alpha, &beta);
-            let soft = self.sweeps.leave_out(v, &self.half, &mut self.taken);
+            let mut energy = self.back(&alpha, &beta);
+            let soft = self.sweeps.leave_out(&self.half, &mut self.taken);
             for l in 0..WIDTH {
                 energy[l] -= soft[l];
             }
@@ -88,14 +90,14 @@ impl<'a, T: Real, const G: bool> Descent<'a, T, G> {
                 break;
             }
             let before = rho;
-            rho = self.forth(v, &alpha);
+            rho = self.forth(&alpha);
             beta = ratios(&rho, &before);
             let mut look = false;
             for l in 0..WIDTH {
                 look |= far[l] && share[l] * rho[l] <= targets[l];
             }
             if look {
-                let squares = self.sweeps.squares(v, &self.rest, &mut self.taken);
+                let squares = self.sweeps.squares(&self.rest, &mut self.taken);
                 share = ratios(&squares, &rho);
                 let mut any = false;
                 for l in 0..WIDTH {
@@ -108,18 +110,18 @@ impl<'a, T: Real, const G: bool> Descent<'a, T, G> {
                 }
             }
         }
-        self.follow(v, &alpha);
-        self.sweeps.backward(v, &mut self.motion);
+        self.follow(&alpha);
+        self.sweeps.backward(&mut self.motion);
         done
     }
 
     /// r̂ᵀ D r̂.
     #[inline(always)]
-    fn weigh<V: Lanes<T = T>>(&self, v: V) -> [f64; WIDTH] {
+    fn weigh(&self) -> [f64; WIDTH] {
         let mut rho = [0.0; WIDTH];
         for g in 0..self.rest.len() {
-            let r = load(v, &self.rest[g]);
-            add_products(v, &r, &self.sweeps.diagonal(v, g, &r), &mut rho);
+            let r = self.rest[g];
+            add_products(&r, &self.sweeps.diagonal(g, &r), &mut rho);
         }
         rho
     }
@@ -127,60 +129,58 @@ impl<'a, T: Real, const G: bool> Descent<'a, T, G> {
     /// x̂ += α p, p = D r̂ + β p, t and s, from the last grain to the first. Returns pᵀ Â p = tᵀ K t, which is
     /// tᵀ (D t + 2 Lᵀ t) = tᵀ (p + s).
     #[inline(always)]
-    fn back<V: Lanes<T = T>>(&mut self, v: V, alpha: &[f64; WIDTH], beta: &[f64; WIDTH]) -> [f64; WIDTH] {
-        let (alpha, beta) = (v.load(&rounded(alpha)), v.load(&rounded(beta)));
+    fn back(&mut self, alpha: &[f64; WIDTH], beta: &[f64; WIDTH]) -> [f64; WIDTH] {
+        let (alpha, beta) = (rounded(alpha), rounded(beta));
         let mut energy = [0.0; WIDTH];
         for g in (0..self.step.len()).rev() {
-            let z = self.sweeps.diagonal(v, g, &load(v, &self.rest[g]));
-            let (mut x, mut p) = (load(v, &self.motion[g]), load(v, &self.step[g]));
+            let z = self.sweeps.diagonal(g, &self.rest[g]);
+            let (mut x, mut p) = (self.motion[g], self.step[g]);
             for k in 0..6 {
-                x[k] = v.mul_add(alpha, p[k], x[k]);
-                p[k] = v.mul_add(beta, p[k], z[k]);
+                x[k] = mul_add(alpha, p[k], x[k]);
+                p[k] = mul_add(beta, p[k], z[k]);
             }
-            store(v, &x, &mut self.motion[g]);
-            store(v, &p, &mut self.step[g]);
-            let (t, s) = self.sweeps.backward_step(v, g, &p, &self.half);
-            store(v, &t, &mut self.half[g]);
-            store(v, &s, &mut self.taken[g]);
+            self.motion[g] = x;
+            self.step[g] = p;
+            let (t, s) = self.sweeps.backward_step(g, &p, &self.half);
+            self.half[g] = t;
+            self.taken[g] = s;
             for k in 0..6 {
-                p[k] = v.add(p[k], s[k]);
+                p[k] = add(p[k], s[k]);
             }
-            add_products(v, &t, &p, &mut energy);
+            add_products(&t, &p, &mut energy);
         }
         energy
     }
 
     /// r̂ −= α Â p with Â p = t + (D + L)⁻¹ s, from the first grain to the last; returns r̂ᵀ D r̂.
     #[inline(always)]
-    fn forth<V: Lanes<T = T>>(&mut self, v: V, alpha: &[f64; WIDTH]) -> [f64; WIDTH] {
+    fn forth(&mut self, alpha: &[f64; WIDTH]) -> [f64; WIDTH] {
         let mut back = *alpha;
         for l in 0..WIDTH {
             back[l] = -alpha[l];
         }
-        let back = v.load(&rounded(&back));
+        let back = rounded(&back);
         let mut rho = [0.0; WIDTH];
         for g in 0..self.rest.len() {
-            let u = self.sweeps.forward_step(v, g, &mut self.taken);
-            let (mut r, t) = (load(v, &self.rest[g]), load(v, &self.half[g]));
+            let u = self.sweeps.forward_step(g, &mut self.taken);
+            let (mut r, t) = (self.rest[g], self.half[g]);
             for k in 0..6 {
-                r[k] = v.mul_add(back, v.add(t[k], u[k]), r[k]);
+                r[k] = mul_add(back, add(t[k], u[k]), r[k]);
             }
-            store(v, &r, &mut self.rest[g]);
-            add_products(v, &r, &self.sweeps.diagonal(v, g, &r), &mut rho);
+            self.rest[g] = r;
+            add_products(&r, &self.sweeps.diagonal(g, &r), &mut rho);
         }
         rho
     }
 
     /// x̂ += α p.
     #[inline(always)]
-    fn follow<V: Lanes<T = T>>(&mut self, v: V, alpha: &[f64; WIDTH]) {
-        let alpha = v.load(&rounded(alpha));
-        for g in 0..self.motion.len() {
-            let (mut x, p) = (load(v, &self.motion[g]), load(v, &self.step[g]));
+    fn follow(&mut self, alpha: &[f64; WIDTH]) {
+        let alpha = rounded(alpha);
+        for (x, p) in self.motion.iter_mut().zip(&self.step) {
             for k in 0..6 {
-                x[k] = v.mul_add(alpha, p[k], x[k]);
+                x[k] = mul_add(alpha, p[k], x[k]);
             }
-            store(v, &x, &mut self.motion[g]);
         }
     }
 }
@@ -199,44 +199,19 @@ pub(crate) struct Goal {
     pub(crate) growth: Option<f64>,
 }
 
-/// A precision of a descent, with the widest vectors that the processor has for it.
-pub(crate) trait Precision: Real {
-    /// See [`Descent::descend`]. All processors give the same bits.
-    fn run<const G: bool>(descent: &mut Descent<'_, Self, G>, goal: &Goal) -> u32;
-}
-
-impl Precision for f32 {
-    fn run<const G: bool>(descent: &mut Descent<'_, Self, G>, goal: &Goal) -> u32 {
-        #[cfg(target_arch = "x86_64")]
-        if let Some(lanes) = Avx2::of_processor()
-            && let Ok(iterations) = with_avx2(Run { descent, goal, lanes })
-        {
-            return iterations;
-        }
-        descent.descend(Plain(PhantomData), goal)
-    }
-}
-
-impl Precision for f64 {
-    fn run<const G: bool>(descent: &mut Descent<'_, Self, G>, goal: &Goal) -> u32 {
-        with_avx2(Run { descent, goal, lanes: Plain(PhantomData) }).unwrap_or_else(Run::run)
-    }
-}
-
 /// [`Descent::descend`] with its arguments. It contains no closures: these are not inlined, and would use the baseline
 /// instruction set.
-struct Run<'d, 'a, V: Lanes, const G: bool> {
-    descent: &'d mut Descent<'a, V::T, G>,
+struct Run<'d, 'a, T, const G: bool> {
+    descent: &'d mut Descent<'a, T, G>,
     goal: &'d Goal,
-    lanes: V,
 }
 
-impl<V: Lanes, const G: bool> Work for Run<'_, '_, V, G> {
+impl<T: Real, const G: bool> Work for Run<'_, '_, T, G> {
     type Output = u32;
 
     #[inline(always)]
     fn run(self) -> u32 {
-        self.descent.descend(self.lanes, self.goal)
+        self.descent.descend(self.goal)
     }
 }
 

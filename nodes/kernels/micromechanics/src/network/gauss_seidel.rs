@@ -8,22 +8,19 @@
 //! Blocks may be singular: a null vector of a block is one of the whole network, so that a generalised
 //! inverse suffices.
 
-use super::lanes::{Lanes, Real, WIDTH};
+use super::lanes::{Real, Row, WIDTH, add, mul, mul_add, mul_sub_from, splat};
 use super::preconditioner::{Block, generalised_inverse};
 use super::soft_motions::SoftMotion;
 use super::spring_network::{ContactSpring, SpringNetwork};
 
 /// Degrees of freedom of one grain, or the conjugate forces, in the units of the sweeps: rows u_x, u_y, u_z,
 /// φ_x, φ_y, φ_z.
-pub(crate) type Rows<T> = [[T; WIDTH]; 6];
+pub(crate) type Rows<T> = [Row<T>; 6];
 
 /// A grain at rest.
 pub(crate) const fn still<T: Real>() -> Rows<T> {
     [[T::ZERO; WIDTH]; 6]
 }
-
-/// [`Rows`] in registers.
-type Six<V> = [<V as Lanes>::Row; 6];
 
 /// The halves of one network, grains in the order of a space-filling curve, stiffnesses in units of
 /// [`Sweeps::unit`]. `G`: with the prestress term.
@@ -130,91 +127,75 @@ impl<T: Real, const G: bool> Sweeps<T, G> {
 
     /// D x of grain `g`.
     #[inline(always)]
-    pub(crate) fn diagonal<V: Lanes<T = T>>(&self, v: V, g: usize, x: &Six<V>) -> Six<V> {
-        product(v, &self.blocks[g], x)
+    pub(crate) fn diagonal(&self, g: usize, x: &Rows<T>) -> Rows<T> {
+        product(&self.blocks[g], x)
     }
 
     /// y = (D + L)⁻¹ y in place.
     #[inline(always)]
-    pub(crate) fn forward<V: Lanes<T = T>>(&self, v: V, y: &mut [Rows<T>]) {
+    pub(crate) fn forward(&self, y: &mut [Rows<T>]) {
         for g in 0..self.grains() {
-            let u = self.forward_step(v, g, y);
-            store(v, &u, &mut y[g]);
+            y[g] = self.forward_step(g, y);
         }
     }
 
     /// One step of that, from the first grain to the last: returns u of grain `g` and subtracts its effect on
     /// later grains from their entries.
     #[inline(always)]
-    pub(crate) fn forward_step<V: Lanes<T = T>>(&self, v: V, g: usize, y: &mut [Rows<T>]) -> Six<V> {
-        let u = product(v, &self.inverse[g], &load(v, &y[g]));
+    pub(crate) fn forward_step(&self, g: usize, y: &mut [Rows<T>]) -> Rows<T> {
+        let u = product(&self.inverse[g], &y[g]);
         for s in self.later(g) {
             let y = &mut y[s.later as usize];
-            let rest = s.push::<V, G>(v, &u, load(v, y));
-            store(v, &rest, y);
+            *y = s.push::<G>(&u, *y);
         }
         u
     }
 
     /// y = (D + L)⁻ᵀ y in place.
     #[inline(always)]
-    pub(crate) fn backward<V: Lanes<T = T>>(&self, v: V, y: &mut [Rows<T>]) {
+    pub(crate) fn backward(&self, y: &mut [Rows<T>]) {
         for g in (0..self.grains()).rev() {
-            let rest = self.left_by_later(v, g, load(v, &y[g]), y);
-            store(v, &product(v, &self.inverse[g], &rest), &mut y[g]);
+            let rest = self.left_by_later(g, y[g], y);
+            y[g] = product(&self.inverse[g], &rest);
         }
     }
 
     /// One step of t = (D + L)⁻ᵀ p, from the last grain to the first: t and s = p − D t of grain `g`, from its p and the
     /// t of later grains.
     #[inline(always)]
-    pub(crate) fn backward_step<V: Lanes<T = T>>(
-        &self,
-        v: V,
-        g: usize,
-        p: &Six<V>,
-        t: &[Rows<T>],
-    ) -> (Six<V>, Six<V>) {
-        let rest = self.left_by_later(v, g, *p, t);
-        let minus = v.splat(T::of(-1.0));
+    pub(crate) fn backward_step(&self, g: usize, p: &Rows<T>, t: &[Rows<T>]) -> (Rows<T>, Rows<T>) {
+        let rest = self.left_by_later(g, *p, t);
+        let minus = splat(T::of(-1.0));
         let mut taken = *p;
         for k in 0..6 {
-            taken[k] = v.mul_add(rest[k], minus, p[k]);
+            taken[k] = mul_add(rest[k], minus, p[k]);
         }
-        (product(v, &self.inverse[g], &rest), taken)
+        (product(&self.inverse[g], &rest), taken)
     }
 
     /// Takes the forces Σ K w wᵀ K t of the soft motions off `taken`. Returns their work tᵀ Σ K w wᵀ K t.
     #[inline(always)]
-    pub(crate) fn leave_out<V: Lanes<T = T>>(
-        &self,
-        v: V,
-        t: &[Rows<T>],
-        taken: &mut [Rows<T>],
-    ) -> [f64; WIDTH] {
+    pub(crate) fn leave_out(&self, t: &[Rows<T>], taken: &mut [Rows<T>]) -> [f64; WIDTH] {
         let mut work = [0.0; WIDTH];
         let mut start = 0;
         for end in &self.soft_ends {
             let forces = &self.soft[start..*end as usize];
             start = *end as usize;
-            let mut share = v.splat(T::ZERO);
+            let mut share = splat(T::ZERO);
             for (g, force) in forces {
-                let t = load(v, &t[*g as usize]);
+                let t = t[*g as usize];
                 for k in 0..6 {
-                    share = v.mul_add(v.splat(force[k]), t[k], share);
+                    share = mul_add(splat(force[k]), t[k], share);
                 }
             }
             for (g, force) in forces {
-                let mut s = load(v, &taken[*g as usize]);
+                let s = &mut taken[*g as usize];
                 for k in 0..6 {
-                    s[k] = v.mul_sub_from(v.splat(force[k]), share, s[k]);
+                    s[k] = mul_sub_from(splat(force[k]), share, s[k]);
                 }
-                store(v, &s, &mut taken[*g as usize]);
             }
-            let mut columns = [T::ZERO; WIDTH];
-            v.store(share, &mut columns);
             for l in 0..WIDTH {
-                work[l] += columns[l].wide() * columns[l].wide();
+                work[l] += share[l].wide() * share[l].wide();
             }
         }
         work
@@ -222,38 +203,31 @@ impl<T: Real, const G: bool> Sweeps<T, G> {
 
     /// Squared norms of (D + L) r, the residual of K.
     #[inline(always)]
-    pub(crate) fn squares<V: Lanes<T = T>>(
-        &self,
-        v: V,
-        r: &[Rows<T>],
-        scratch: &mut [Rows<T>],
-    ) -> [f64; WIDTH] {
+    pub(crate) fn squares(&self, r: &[Rows<T>], scratch: &mut [Rows<T>]) -> [f64; WIDTH] {
         for g in 0..self.grains() {
-            store(v, &product(v, &self.blocks[g], &load(v, &r[g])), &mut scratch[g]);
+            scratch[g] = product(&self.blocks[g], &r[g]);
         }
         let mut squares = [0.0; WIDTH];
-        let minus = v.splat(T::of(-1.0));
+        let minus = splat(T::of(-1.0));
         for g in 0..self.grains() {
-            let mut opposite = load(v, &r[g]);
+            let mut opposite = r[g];
             for row in &mut opposite {
-                *row = v.mul(*row, minus);
+                *row = mul(*row, minus);
             }
             for s in self.later(g) {
                 let y = &mut scratch[s.later as usize];
-                let sum = s.push::<V, G>(v, &opposite, load(v, y));
-                store(v, &sum, y);
+                *y = s.push::<G>(&opposite, *y);
             }
-            let y = load(v, &scratch[g]);
-            add_products(v, &y, &y, &mut squares);
+            add_products(&scratch[g], &scratch[g], &mut squares);
         }
         squares
     }
 
     /// `rest` minus the effect of the motions of later grains on grain `g`.
     #[inline(always)]
-    fn left_by_later<V: Lanes<T = T>>(&self, v: V, g: usize, mut rest: Six<V>, motion: &[Rows<T>]) -> Six<V> {
+    fn left_by_later(&self, g: usize, mut rest: Rows<T>, motion: &[Rows<T>]) -> Rows<T> {
         for s in self.later(g) {
-            rest = s.pull::<V, G>(v, &load(v, &motion[s.later as usize]), rest);
+            rest = s.pull::<G>(&motion[s.later as usize], rest);
         }
         rest
     }
@@ -291,109 +265,84 @@ impl<T: Real> Half<T> {
 
     /// `rest` of the later grain minus the effect of the motion `a` of the earlier one.
     #[inline(always)]
-    fn push<V: Lanes<T = T>, const G: bool>(&self, v: V, a: &Six<V>, rest: Six<V>) -> Six<V> {
-        self.taken_off::<V, G>(v, a, self.levers, rest)
+    fn push<const G: bool>(&self, a: &Rows<T>, rest: Rows<T>) -> Rows<T> {
+        self.taken_off::<G>(a, self.levers, rest)
     }
 
     /// `rest` of the earlier grain minus the effect of the motion `b` of the later one: the same with
     /// exchanged levers.
     #[inline(always)]
-    fn pull<V: Lanes<T = T>, const G: bool>(&self, v: V, b: &Six<V>, rest: Six<V>) -> Six<V> {
+    fn pull<const G: bool>(&self, b: &Rows<T>, rest: Rows<T>) -> Rows<T> {
         let [earlier, later] = self.levers;
-        self.taken_off::<V, G>(v, b, [later, earlier].map(|arm| -arm), rest)
+        self.taken_off::<G>(b, [later, earlier].map(|arm| -arm), rest)
     }
 
     /// With the levers of the moving grain and of the other one.
     #[inline(always)]
-    fn taken_off<V: Lanes<T = T>, const G: bool>(
-        &self,
-        v: V,
-        a: &Six<V>,
-        levers: [T; 2],
-        mut rest: Six<V>,
-    ) -> Six<V> {
-        let [nx, ny, nz] = splats(v, &self.normal);
-        let [from, to] = [v.splat(levers[0]), v.splat(levers[1])];
-        let [mx, my, mz] = [v.mul(from, nx), v.mul(from, ny), v.mul(from, nz)];
-        let [tx, ty, tz] = [v.mul(to, nx), v.mul(to, ny), v.mul(to, nz)];
-        let (tangential, kn_minus_kt) = (v.splat(self.tangential), v.splat(self.kn_minus_kt));
+    fn taken_off<const G: bool>(&self, a: &Rows<T>, levers: [T; 2], mut rest: Rows<T>) -> Rows<T> {
+        let [nx, ny, nz] = [splat(self.normal[0]), splat(self.normal[1]), splat(self.normal[2])];
+        let [from, to] = [splat(levers[0]), splat(levers[1])];
+        let [mx, my, mz] = [mul(from, nx), mul(from, ny), mul(from, nz)];
+        let [tx, ty, tz] = [mul(to, nx), mul(to, ny), mul(to, nz)];
+        let (tangential, kn_minus_kt) = (splat(self.tangential), splat(self.kn_minus_kt));
         // u + φ×m, of this grain alone.
-        let wx = v.mul_add(a[4], mz, v.mul_sub_from(a[5], my, a[0]));
-        let wy = v.mul_add(a[5], mx, v.mul_sub_from(a[3], mz, a[1]));
-        let wz = v.mul_add(a[3], my, v.mul_sub_from(a[4], mx, a[2]));
-        let along = v.mul(kn_minus_kt, v.mul_add(nz, wz, v.mul_add(ny, wy, v.mul(nx, wx))));
-        let fx = v.mul_add(tangential, wx, v.mul(along, nx));
-        let fy = v.mul_add(tangential, wy, v.mul(along, ny));
-        let fz = v.mul_add(tangential, wz, v.mul(along, nz));
-        rest[0] = v.add(rest[0], fx);
-        rest[1] = v.add(rest[1], fy);
-        rest[2] = v.add(rest[2], fz);
+        let wx = mul_add(a[4], mz, mul_sub_from(a[5], my, a[0]));
+        let wy = mul_add(a[5], mx, mul_sub_from(a[3], mz, a[1]));
+        let wz = mul_add(a[3], my, mul_sub_from(a[4], mx, a[2]));
+        let along = mul(kn_minus_kt, mul_add(nz, wz, mul_add(ny, wy, mul(nx, wx))));
+        let fx = mul_add(tangential, wx, mul(along, nx));
+        let fy = mul_add(tangential, wy, mul(along, ny));
+        let fz = mul_add(tangential, wz, mul(along, nz));
+        rest[0] = add(rest[0], fx);
+        rest[1] = add(rest[1], fy);
+        rest[2] = add(rest[2], fz);
         // −t×f.
-        rest[3] = v.mul_sub_from(ty, fz, v.mul_add(tz, fy, rest[3]));
-        rest[4] = v.mul_sub_from(tz, fx, v.mul_add(tx, fz, rest[4]));
-        rest[5] = v.mul_sub_from(tx, fy, v.mul_add(ty, fx, rest[5]));
+        rest[3] = mul_sub_from(ty, fz, mul_add(tz, fy, rest[3]));
+        rest[4] = mul_sub_from(tz, fx, mul_add(tx, fz, rest[4]));
+        rest[5] = mul_sub_from(tx, fy, mul_add(ty, fx, rest[5]));
         if G {
             // −g (1 − nn) u.
-            let (gain, loss) = (v.splat(self.geometric), v.splat(-self.geometric));
-            let along = v.mul(gain, v.mul_add(nz, a[2], v.mul_add(ny, a[1], v.mul(nx, a[0]))));
-            rest[0] = v.mul_add(loss, a[0], v.mul_add(along, nx, rest[0]));
-            rest[1] = v.mul_add(loss, a[1], v.mul_add(along, ny, rest[1]));
-            rest[2] = v.mul_add(loss, a[2], v.mul_add(along, nz, rest[2]));
+            let (gain, loss) = (splat(self.geometric), splat(-self.geometric));
+            let along = mul(gain, mul_add(nz, a[2], mul_add(ny, a[1], mul(nx, a[0]))));
+            rest[0] = mul_add(loss, a[0], mul_add(along, nx, rest[0]));
+            rest[1] = mul_add(loss, a[1], mul_add(along, ny, rest[1]));
+            rest[2] = mul_add(loss, a[2], mul_add(along, nz, rest[2]));
         }
         rest
     }
 }
 
-#[inline(always)]
-fn splats<V: Lanes>(v: V, three: &[V::T; 3]) -> [V::Row; 3] {
-    [v.splat(three[0]), v.splat(three[1]), v.splat(three[2])]
-}
-
-#[inline(always)]
-pub(crate) fn load<V: Lanes>(v: V, x: &Rows<V::T>) -> Six<V> {
-    [v.load(&x[0]), v.load(&x[1]), v.load(&x[2]), v.load(&x[3]), v.load(&x[4]), v.load(&x[5])]
-}
-
-#[inline(always)]
-pub(crate) fn store<V: Lanes>(v: V, x: &Six<V>, to: &mut Rows<V::T>) {
-    for k in 0..6 {
-        v.store(x[k], &mut to[k]);
-    }
-}
-
 /// Product m x.
 #[inline(always)]
-fn product<V: Lanes>(v: V, m: &Packed<V::T>, x: &Six<V>) -> Six<V> {
+fn product<T: Real>(m: &Packed<T>, x: &Rows<T>) -> Rows<T> {
     [
-        row::<V, 0>(v, m, x),
-        row::<V, 1>(v, m, x),
-        row::<V, 2>(v, m, x),
-        row::<V, 3>(v, m, x),
-        row::<V, 4>(v, m, x),
-        row::<V, 5>(v, m, x),
+        row::<T, 0>(m, x),
+        row::<T, 1>(m, x),
+        row::<T, 2>(m, x),
+        row::<T, 3>(m, x),
+        row::<T, 4>(m, x),
+        row::<T, 5>(m, x),
     ]
 }
 
 #[inline(always)]
-fn row<V: Lanes, const K: usize>(v: V, m: &Packed<V::T>, x: &Six<V>) -> V::Row {
-    let sum = v.mul(v.splat(m[const { place(K, 0) }]), x[0]);
-    let sum = v.mul_add(v.splat(m[const { place(K, 1) }]), x[1], sum);
-    let sum = v.mul_add(v.splat(m[const { place(K, 2) }]), x[2], sum);
-    let sum = v.mul_add(v.splat(m[const { place(K, 3) }]), x[3], sum);
-    let sum = v.mul_add(v.splat(m[const { place(K, 4) }]), x[4], sum);
-    v.mul_add(v.splat(m[const { place(K, 5) }]), x[5], sum)
+fn row<T: Real, const K: usize>(m: &Packed<T>, x: &Rows<T>) -> Row<T> {
+    let sum = mul(splat(m[const { place(K, 0) }]), x[0]);
+    let sum = mul_add(splat(m[const { place(K, 1) }]), x[1], sum);
+    let sum = mul_add(splat(m[const { place(K, 2) }]), x[2], sum);
+    let sum = mul_add(splat(m[const { place(K, 3) }]), x[3], sum);
+    let sum = mul_add(splat(m[const { place(K, 4) }]), x[4], sum);
+    mul_add(splat(m[const { place(K, 5) }]), x[5], sum)
 }
 
 /// Adds xᵀ y of each column to `sum`. Six products are added up in T before they are widened.
 #[inline(always)]
-pub(crate) fn add_products<V: Lanes>(v: V, x: &Six<V>, y: &Six<V>, sum: &mut [f64; WIDTH]) {
-    let mut local = v.mul(x[0], y[0]);
+pub(crate) fn add_products<T: Real>(x: &Rows<T>, y: &Rows<T>, sum: &mut [f64; WIDTH]) {
+    let mut local = mul(x[0], y[0]);
     for k in 1..6 {
-        local = v.mul_add(x[k], y[k], local);
+        local = mul_add(x[k], y[k], local);
     }
-    let mut columns = [V::T::ZERO; WIDTH];
-    v.store(local, &mut columns);
     for l in 0..WIDTH {
-        sum[l] += columns[l].wide();
+        sum[l] += local[l].wide();
     }
 }

@@ -11,9 +11,9 @@
 //! back, in double precision.
 //! All operations run in a fixed order on one thread: the same input gives the same bits.
 
-use super::conjugate_gradient::{Descent, Goal, Precision};
+use super::conjugate_gradient::{Descent, Goal};
 use super::gauss_seidel::Sweeps;
-use super::lanes::WIDTH;
+use super::lanes::{Real, WIDTH};
 use super::preconditioner::Block;
 use super::soft_motions::{Entries, SoftMotion, soft_motions};
 use super::spring_network::{GrainDofs, SpringNetwork};
@@ -241,7 +241,7 @@ impl<'a, const L: usize> Refinement<'a, L> {
 
     /// Rounds of conjugate gradients, as long as they help. Each reduces the residual by at most `reach` in
     /// at most `most` iterations. Returns true if the solve is finished.
-    fn rounds<T: Precision, const G: bool>(
+    fn rounds<T: Real, const G: bool>(
         &mut self,
         network: &SpringNetwork,
         descent: &mut Descent<T, G>,
@@ -267,7 +267,7 @@ impl<'a, const L: usize> Refinement<'a, L> {
     }
 
     /// Residuals of norm 1 in the order of the sweeps: the start of a descent.
-    fn fill<T: Precision, const G: bool>(
+    fn fill<T: Real, const G: bool>(
         &self,
         descent: &mut Descent<T, G>,
         squares: &[f64; WIDTH],
@@ -285,12 +285,7 @@ impl<'a, const L: usize> Refinement<'a, L> {
     }
 
     /// One round, with the number of its iterations.
-    fn round<T: Precision, const G: bool>(
-        &mut self,
-        descent: &mut Descent<T, G>,
-        reach: f64,
-        most: u32,
-    ) -> u32 {
+    fn round<T: Real, const G: bool>(&mut self, descent: &mut Descent<T, G>, reach: f64, most: u32) -> u32 {
         let sweeps = descent.sweeps;
         if !self.soft.is_empty() {
             self.balance_soft();
@@ -313,11 +308,11 @@ impl<'a, const L: usize> Refinement<'a, L> {
         let limit = most.min(self.max_iterations.saturating_sub(self.iterations));
         // In single precision a round that loses its way is discarded.
         let growth = (reach == DOUBLE && !G).then_some(GROWTH);
-        let mut iterations = T::run(descent, &Goal { squares, targets, limit, growth });
+        let mut iterations = descent.run(&Goal { squares, targets, limit, growth });
         if let Some(limit) = descent.lost_after.filter(|_| self.soft.is_empty()) {
             // Rounding has put a motion without resistance into a column: back to where that began.
             self.fill(descent, &squares, &norms);
-            iterations += T::run(descent, &Goal { squares, targets, limit, growth: None });
+            iterations += descent.run(&Goal { squares, targets, limit, growth: None });
         }
         self.iterations += iterations;
         let before: Vec<[f64; L]> = self.soft.iter().map(|s| shares(&s.force, &self.motion)).collect();

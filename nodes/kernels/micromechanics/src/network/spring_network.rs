@@ -43,8 +43,11 @@ pub enum Springs {
     NormalAndTangential,
     /// k_n alone: frictionless.
     Normal,
-    /// k_n and the prestress term of [`SpringNetwork::with_prestress`]. With tangential springs that term is
-    /// smaller by 1e-4.
+    /// k_n and the prestress term −(F_n/|l|)(1 − nn) on the displacement of the centres: a normal force rotates with
+    /// its branch. Relative to a tangential spring it is of the order of (2/3) overlap/diameter. Without such springs
+    /// it decides whether a network near isostaticity is stiff. Contacts of rattlers are dropped: under its force a
+    /// grain on one contact rolls off, while without the term it just follows. Terms of the order of the pressure that
+    /// depend on the choice of strain and stress measures are left out.
     PrestressedNormal,
 }
 
@@ -127,34 +130,15 @@ impl SpringNetwork {
         }
         let mut order: Vec<u32> = (0..packing.grains() as u32).collect();
         order.sort_by_cached_key(|g| packing.cell.place_on_curve(&packing.positions[*g as usize]));
-        let network = Self {
-            springs,
-            grains: packing.grains(),
-            volume: packing.cell.volume(),
-            spin_scale,
-            order,
-            prestressed: false,
-        };
-        if kind == Springs::PrestressedNormal { network.with_prestress(view) } else { Ok(network) }
-    }
-
-    /// Adds the prestress term −(F_n/|l|)(1 − nn) on the displacement of the centres: a normal force
-    /// rotates with its branch. Relative to a tangential spring it is of the order of (2/3) overlap/diameter.
-    /// Without such springs it decides whether a network near isostaticity is stiff. Contacts of rattlers are
-    /// dropped: under its force a grain on one contact rolls off, while without the term it just follows.
-    /// `view` is that of the same packing. Terms of the order of the pressure that depend on the choice of
-    /// strain and stress measures are left out.
-    pub fn with_prestress(mut self, view: &PackingView<'_>) -> Result<Self, MicroError> {
-        let contacts = &view.packing.contacts;
-        if self.springs.len() != contacts.len() {
-            return Err(MicroError::OtherPacking { network: self.springs.len(), packing: contacts.len() });
+        let prestressed = kind == Springs::PrestressedNormal;
+        if prestressed {
+            for (s, c) in springs.iter_mut().zip(&packing.contacts) {
+                s.geometric = c.normal_force / (2.0 * s.half_branch);
+            }
+            springs.retain(|s| view.carries_force(s.i, s.j));
         }
-        for (s, c) in self.springs.iter_mut().zip(contacts) {
-            s.geometric = c.normal_force / (2.0 * s.half_branch);
-        }
-        self.springs.retain(|s| view.carries_force(s.i, s.j));
-        self.prestressed = true;
-        Ok(self)
+        let (grains, volume) = (packing.grains(), packing.cell.volume());
+        Ok(Self { springs, grains, volume, spin_scale, order, prestressed })
     }
 
     /// True if the prestress term is included.
@@ -192,27 +176,18 @@ impl SpringNetwork {
         self.spin_scale
     }
 
-    /// y = K x for `L` motions at once, one entry per grain; returns xᵀ K x of each, J. Contacts are summed in the
-    /// order of the packing, so the result is the same bit for bit on every call.
+    /// y = K x for `L` motions at once, one entry per grain. Contacts are summed in the order of the packing, so the
+    /// result is the same bit for bit on every call.
     ///
     /// # Panics
     /// If `x` and `y` have not one entry for each of [`SpringNetwork::grains`].
-    pub fn apply<const L: usize>(&self, x: &[GrainDofs<L>], y: &mut [GrainDofs<L>]) -> [f64; L] {
+    pub fn apply<const L: usize>(&self, x: &[GrainDofs<L>], y: &mut [GrainDofs<L>]) {
         assert_eq!((x.len(), y.len()), (self.grains, self.grains), "one motion per grain");
         y.fill([[0.0; L]; 6]);
-        let mut energy = [0.0; L];
         for s in &self.springs {
             let (a, b) = (&x[s.i as usize], &x[s.j as usize]);
-            let (w, d) = (s.relative(a, b), s.apart(a, b));
-            let (f, h) = (s.force(&w), s.turned(&d));
-            for k in 0..3 {
-                for lane in 0..L {
-                    energy[lane] += w[k][lane] * f[k][lane] + d[k][lane] * h[k][lane];
-                }
-            }
-            s.scatter(&f, &h, y);
+            s.scatter(&s.force(&s.relative(a, b)), &s.turned(&s.apart(a, b)), y);
         }
-        energy
     }
 
     /// Diagonal blocks of K, one per grain, N/m.

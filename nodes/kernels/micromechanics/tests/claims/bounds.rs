@@ -2,28 +2,17 @@
 //! term.
 
 use crate::golden::reference;
-use crate::samples::{packing, random};
+use crate::samples::{network, packing, random, solved};
 use grainlab_core::Contact;
 use grainlab_core::contact::RollingResistance;
-use grainlab_core::results::{ElasticStiffness, StiffnessMethod};
+use grainlab_core::results::StiffnessMethod;
 use grainlab_core::{Cell, Mat3, Packing, Vec3};
-use grainlab_micromechanics::network::{
-    SpringNetwork, Springs, relaxed_stiffness, uniform_rotation_stiffness,
-};
-use grainlab_micromechanics::{MicroError, PackingView, Settings, analyze};
+use grainlab_micromechanics::network::{Springs, relaxed_stiffness, uniform_rotation_stiffness};
+use grainlab_micromechanics::{MicroError, Settings};
 use grainlab_testkit::Random;
 use grainlab_testkit::packings::FACE_CENTRED;
 
 const D: f64 = 2.0e-4;
-
-fn moduli(p: &Packing, settings: &Settings) -> ElasticStiffness {
-    analyze(p, settings).unwrap().report.stiffness().copied().unwrap()
-}
-
-fn prestressed(p: &Packing, springs: Springs) -> SpringNetwork {
-    let view = PackingView::new(p).unwrap();
-    SpringNetwork::new(&view, springs).unwrap().with_prestress(&view).unwrap()
-}
 
 /// One grain in a cell of three different edges, so that the springs along x and z differ.
 fn orthorhombic() -> Packing {
@@ -36,7 +25,7 @@ fn orthorhombic() -> Packing {
 #[test]
 fn a_mean_spin_is_exact_where_two_directions_differ() {
     let p = orthorhombic();
-    let m = moduli(&p, &Settings::default());
+    let m = solved(&p, &Settings::default());
     let weight = |k: usize| {
         let c = p.contacts.iter().find(|c| c.normal[k].abs() > 0.5).unwrap();
         p.contact_stiffness(c).1 * p.branch(c).norm_squared()
@@ -57,14 +46,14 @@ fn a_mean_spin_is_exact_where_two_directions_differ() {
 fn a_mean_spin_lies_between_relaxed_and_affine_and_is_affine_without_tangential_springs() {
     for seed in 41..45 {
         let p = random(50, 1.2, seed);
-        let m = moduli(&p, &Settings::default());
+        let m = solved(&p, &Settings::default());
         for (above, below) in
             [(&m.bounds.affine, &m.bounds.uniform_rotation), (&m.bounds.uniform_rotation, &m.tensor)]
         {
             assert!((above.0 - below.0).symmetric_eigenvalues().min() > -1e-12 * m.bounds.affine.0.amax());
         }
         assert!((m.bounds.affine.0 - m.bounds.uniform_rotation.0).amax() > 1e-6 * m.bounds.affine.0.amax());
-        let smooth = SpringNetwork::new(&PackingView::new(&p).unwrap(), Springs::Normal).unwrap();
+        let smooth = network(&p, Springs::Normal);
         let affine = smooth.affine_stiffness();
         assert_eq!(uniform_rotation_stiffness(&smooth, &affine), affine);
     }
@@ -75,33 +64,19 @@ fn a_mean_spin_lies_between_relaxed_and_affine_and_is_affine_without_tangential_
 fn the_reuss_bound_is_the_bulk_modulus_of_a_lattice_and_below_it_in_a_packing() {
     let edge = D * (1.0 - 2e-4);
     let p = packing(Cell::cube(edge).unwrap(), vec![Vec3::zeros()], 0.5 * D, 0.3, None);
-    let m = moduli(&p, &Settings::default());
+    let m = solved(&p, &Settings::default());
     let expected = p.contact_stiffness(&p.contacts[0]).0 / (3.0 * edge);
     assert!((m.bounds.bulk_reuss.unwrap() / expected - 1.0).abs() < 1e-12);
     assert!((m.tensor.bulk_reuss().unwrap() / expected - 1.0).abs() < 1e-12);
 
-    let m = moduli(&reference(), &Settings::default());
+    let m = solved(&reference(), &Settings::default());
     let share = m.bounds.bulk_reuss.unwrap() / m.tensor.bulk_reuss().unwrap();
     // .879 from Z̃(5/3) of such packings and their ratio of relaxed to affine modulus.
     assert!((0.8..1.0).contains(&share), "{share}");
 
     let rolling = RollingResistance { stiffness: 1e4, damping: 0.0, friction: 0.1 };
     let resists = Packing { law: p.law.with_rolling(rolling), ..p };
-    assert_eq!(moduli(&resists, &Settings::default()).bounds.bulk_reuss, None, "its springs are left out");
-}
-
-/// Simple cubic: the normal forces rotate with the branches, C44 = (k_t − F/D)/(2 D), and C11 is unchanged.
-#[test]
-fn prestress_takes_the_normal_force_off_the_shear_modulus_of_a_lattice() {
-    let edge = D * (1.0 - 1e-2);
-    let p = packing(Cell::cube(edge).unwrap(), vec![Vec3::zeros()], 0.5 * D, 0.3, None);
-    let (k_n, k_t) = p.contact_stiffness(&p.contacts[0]);
-    let network = prestressed(&p, Springs::NormalAndTangential);
-    let m = relaxed_stiffness(&network, 1e-9, 100).unwrap().unwrap();
-    assert!(network.prestressed());
-    let expected = (k_t - p.contacts[0].normal_force / edge) / (2.0 * edge);
-    assert!((m.relaxed.0[(3, 3)] / expected - 1.0).abs() < 1e-12);
-    assert!((m.relaxed.0[(0, 0)] * edge / k_n - 1.0).abs() < 1e-12);
+    assert_eq!(solved(&resists, &Settings::default()).bounds.bulk_reuss, None, "its springs are left out");
 }
 
 /// Face-centred cubic without tangential springs: prestress acts as springs of −F/D across the contacts, so that the energy has
@@ -116,7 +91,7 @@ fn prestress_is_a_negative_tangential_spring_of_a_smooth_lattice() {
     assert_eq!(p.contacts.len(), 24);
     let (k, f) = (p.contact_stiffness(&p.contacts[0]).0, p.contacts[0].normal_force / d);
     let settings = Settings { springs: Springs::PrestressedNormal, ..Settings::default() };
-    let m = moduli(&p, &settings);
+    let m = solved(&p, &settings);
     assert_eq!(m.method, StiffnessMethod::PrestressedNetwork);
     let (c, root) = (m.tensor.0, 2f64.sqrt());
     for (entry, expected) in [
@@ -136,7 +111,7 @@ fn a_lattice_that_only_its_cell_keeps_from_shearing_is_an_error_by_name() {
     let edge = D * (1.0 - 1e-2);
     let p = packing(Cell::cube(edge).unwrap(), vec![Vec3::zeros()], 0.5 * D, 0.0, None);
     let expected = -p.contacts[0].normal_force / (2.0 * edge.powi(2));
-    match relaxed_stiffness(&prestressed(&p, Springs::Normal), 1e-9, 100) {
+    match relaxed_stiffness(&network(&p, Springs::PrestressedNormal), 1e-9, 100) {
         Err(MicroError::HeldOnly { eigenvalue }) => assert!((eigenvalue / expected - 1.0).abs() < 1e-12),
         other => panic!("{other:?}"),
     }
@@ -146,8 +121,8 @@ fn a_lattice_that_only_its_cell_keeps_from_shearing_is_an_error_by_name() {
 #[test]
 fn a_prestressed_network_balances_its_loads() {
     for seed in 48..51 {
-        let p = random(50, 1.2, seed);
-        let network = prestressed(&p, Springs::NormalAndTangential);
+        let p = random(50, 1.35, seed);
+        let network = network(&p, Springs::PrestressedNormal);
         let (loads, norms) = network.affine_loads();
         match grainlab_micromechanics::network::solve(&network, &loads, &norms, 1e-10, 20_000) {
             Ok(solution) => {
@@ -178,11 +153,10 @@ fn a_chain_that_buckles_is_an_error_by_name() {
     // With friction a grain with two contacts is not a rattler, and prestress keeps it.
     let p = packing(cell, positions, 0.5 * D, 0.1, None);
     assert!(p.contacts.len() == grains && p.contacts.iter().all(|c: &Contact| c.normal_force > 0.0));
-    let network = prestressed(&p, Springs::Normal);
-    let refused = relaxed_stiffness(&network, 1e-9, 20_000);
+    let refused = relaxed_stiffness(&network(&p, Springs::PrestressedNormal), 1e-9, 20_000);
     assert!(matches!(refused, Err(MicroError::Unstable { .. })), "{refused:?}");
     // Without prestress, straightening the chain costs no energy.
-    let network = SpringNetwork::new(&PackingView::new(&p).unwrap(), Springs::Normal).unwrap();
+    let network = network(&p, Springs::Normal);
     assert_eq!(network.contacts(), grains);
     assert_eq!(relaxed_stiffness(&network, 1e-9, 20_000), Ok(None));
 }

@@ -1,7 +1,7 @@
 //! Comparison with a dense pseudo-inverse, assembled independently.
 
-use crate::samples::random;
-use grainlab_core::{Mat3, Packing, Vec3};
+use crate::samples::{packing, random, solved, with_springs};
+use grainlab_core::{Cell, Mat3, Packing, Vec3};
 use grainlab_micromechanics::network::Springs;
 use grainlab_micromechanics::{Settings, analyze};
 use nalgebra::{DMatrix, Matrix6};
@@ -81,8 +81,7 @@ fn random_networks_agree_with_a_dense_pseudo_inverse() {
 fn random_networks_without_tangential_springs_agree_with_a_dense_pseudo_inverse() {
     for (swell, seed) in [(1.25, 5), (1.35, 6)] {
         let p = random(40, swell, seed);
-        let settings = Settings { springs: Springs::Normal, ..Settings::default() };
-        let m = analyze(&p, &settings).unwrap().report.stiffness().copied().unwrap();
+        let m = with_springs(&p, Springs::Normal);
         let error = (m.tensor.0 - dense_stiffness(&p, false)).amax() / m.bounds.affine.0.amax();
         assert!(error < 1e-9, "swell {swell}: {error:e}");
     }
@@ -92,13 +91,11 @@ fn random_networks_without_tangential_springs_agree_with_a_dense_pseudo_inverse(
 #[test]
 fn two_grains_with_own_images_agree_with_a_dense_pseudo_inverse() {
     let d = 2.0e-4;
-    let cell =
-        grainlab_core::Cell::new(Mat3::new(d, 0.1 * d, 0.0, 0.0, 0.98 * d, 0.2 * d, 0.0, 0.0, 1.5 * d))
-            .unwrap();
+    let cell = Cell::new(Mat3::new(d, 0.1 * d, 0.0, 0.0, 0.98 * d, 0.2 * d, 0.0, 0.0, 1.5 * d)).unwrap();
     let positions = vec![Vec3::zeros(), Vec3::new(0.4, 0.6, 0.7) * d];
-    let p = crate::samples::packing(cell, positions, 0.52 * d, 0.1, None);
+    let p = packing(cell, positions, 0.52 * d, 0.1, None);
     assert!(p.contacts.iter().any(|c| c.i == c.j) && p.contacts.iter().any(|c| c.i != c.j));
-    let m = analyze(&p, &Settings::default()).unwrap().report.stiffness().copied().unwrap();
+    let m = solved(&p, &Settings::default());
     let dense = dense_stiffness(&p, true);
     let error = (m.tensor.0 - dense).amax() / m.bounds.affine.0.amax();
     assert!(error < 1e-12, "{error:e}");

@@ -1,9 +1,9 @@
 //! A dense Cholesky factorisation against the iterations: one operator, two methods for C = A − ΞᵀK⁺Ξ/V.
 
-use crate::samples::random;
+use crate::samples::{network, random, solved};
 use grainlab_core::Packing;
-use grainlab_micromechanics::network::{GrainDofs, SpringNetwork, Springs, solve};
-use grainlab_micromechanics::{MicroError, PackingView, Settings, analyze};
+use grainlab_micromechanics::network::{GrainDofs, Springs, solve};
+use grainlab_micromechanics::{MicroError, Settings, analyze};
 use grainlab_testkit::Random;
 use nalgebra::{DMatrix, Matrix6};
 
@@ -13,7 +13,7 @@ const SHARE: f64 = 1e-11;
 
 /// The stiffness of the network, Pa, with every force balanced to a relative residual of 1e-12.
 pub(crate) fn factorised(packing: &Packing, springs: Springs) -> Matrix6<f64> {
-    let network = SpringNetwork::new(&PackingView::new(packing).unwrap(), springs).unwrap();
+    let network = network(packing, springs);
     let grains = packing.grains();
     let mut image = vec![[[0.0; 6]; 6]; grains];
     let mut matrix = DMatrix::zeros(6 * grains, 6 * grains);
@@ -49,7 +49,7 @@ fn stacked(motions: &[GrainDofs<6>]) -> DMatrix<f64> {
 /// Returns the iterations of a solve that agrees with the factorisation.
 fn agree(packing: &Packing, springs: Springs) -> u32 {
     let settings = Settings { springs, tolerance: Some(1e-10), ..Settings::default() };
-    let found = analyze(packing, &settings).unwrap().report.stiffness().copied().unwrap();
+    let found = solved(packing, &settings);
     let error = (found.tensor.0 - factorised(packing, springs)).amax() / found.bounds.affine.0.amax();
     // Above the exact one by the square of the residual over the smallest stiffness.
     assert!(error < 1e-9, "{error:e}");
@@ -80,7 +80,7 @@ fn grains_without_contacts_and_grains_that_hang_on_one_do_no_harm() {
 #[test]
 fn another_number_of_loads_than_of_grains_is_refused() {
     let p = random(30, 1.3, 1);
-    let network = SpringNetwork::new(&PackingView::new(&p).unwrap(), Springs::Carried).unwrap();
+    let network = network(&p, Springs::Carried);
     let loads = vec![[[0.0]; 6]; 29];
     let refused = solve(&network, &loads, &[1.0], 1e-9, 10).unwrap_err();
     assert_eq!(refused, MicroError::Loads { grains: 30, loads: 29 });

@@ -1,11 +1,11 @@
 //! Networks close to the loss of stiffness.
 
 use crate::dense::dense_stiffness;
-use crate::samples::{packing_of_sizes, random, thinned};
+use crate::samples::{network, packing_of_sizes, places, random, thinned, with_springs};
 use grainlab_core::results::{ElasticStiffness, NoStiffness};
-use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
-use grainlab_micromechanics::network::{SpringNetwork, Springs};
-use grainlab_micromechanics::{PackingView, Settings, analyze};
+use grainlab_core::{Cell, Mat3, Material, Packing};
+use grainlab_micromechanics::network::Springs;
+use grainlab_micromechanics::{Settings, analyze};
 use grainlab_testkit::Random;
 
 fn springs(tangential: bool) -> Springs {
@@ -13,8 +13,7 @@ fn springs(tangential: bool) -> Springs {
 }
 
 fn moduli(p: &Packing, tangential: bool) -> ElasticStiffness {
-    let settings = Settings { springs: springs(tangential), ..Settings::default() };
-    analyze(p, &settings).unwrap().report.stiffness().copied().unwrap()
+    with_springs(p, springs(tangential))
 }
 
 /// Against the dense pseudo-inverse, as a fraction of the affine stiffness.
@@ -96,19 +95,8 @@ fn sizes_of_one_to_five_are_solved_with_and_without_tangential_springs() {
     // The largest find a place first.
     radii.sort_by(|a, b| b.total_cmp(a));
     let cell = Cell::new(Mat3::identity() * 8.6e-4).unwrap();
-    let mut positions: Vec<Vec3> = Vec::new();
-    while positions.len() < grains {
-        let x = cell.matrix() * Vec3::new(dice.unit(), dice.unit(), dice.unit());
-        let own = radii[positions.len()];
-        let clear = positions.iter().zip(&radii).all(|(y, r)| {
-            let mut s = cell.fractional(&(x - y));
-            s.apply(|v| *v -= v.round());
-            (cell.matrix() * s).norm() > 0.75 * (own + r)
-        });
-        if clear {
-            positions.push(x);
-        }
-    }
+    let close: Vec<f64> = radii.iter().map(|r| 0.75 * r).collect();
+    let positions = places(&cell, &close, &mut dice);
     let p = packing_of_sizes(cell, positions, radii.iter().map(|r| 1.15 * r).collect(), 0.3, None);
     assert!(p.contacts.len() > 2 * grains, "{}", p.contacts.len());
     assert!(error(&p, true) < 1e-9);
@@ -155,7 +143,7 @@ fn networks_next_to_mechanisms_are_solved_though_single_precision_is_lost_in_the
     for (swell, seed) in [(1.12, 1), (1.12, 3), (1.12, 4), (1.13, 5), (1.12, 7), (1.12, 8), (1.12, 9)] {
         for tangential in [true, false] {
             let p = random(120, swell, seed);
-            let network = SpringNetwork::new(&PackingView::new(&p).unwrap(), springs(tangential)).unwrap();
+            let network = network(&p, springs(tangential));
             let (loads, norms) = network.affine_loads();
             let found = grainlab_micromechanics::network::solve(&network, &loads, &norms, 1e-10, 20_000);
             assert!(found.is_ok_and(|s| s.residual <= 1e-10), "swell {swell}, seed {seed}, {tangential}");

@@ -1,6 +1,6 @@
 //! Lattices with closed forms, and contacts with own images.
 
-use crate::samples::packing;
+use crate::samples::{packing, solved, with_springs};
 use grainlab_core::contact::{ContactLaw, Rough, SpringLaw};
 use grainlab_core::{Cell, Mat3, Packing, Stiffness, Vec3};
 use grainlab_micromechanics::network::Springs;
@@ -68,7 +68,7 @@ fn fcc_is_exact_with_four_grains() {
     let (k_n, k_t) = springs(&p);
     let root = 2f64.sqrt();
     let expected = cubic(root * (k_n + k_t) / D, (k_n - k_t) / (root * D), (k_n + k_t) / (root * D));
-    let m = analyze(&p, &Settings::default()).unwrap().report.stiffness().copied().unwrap();
+    let m = solved(&p, &Settings::default());
     assert_equal(&m.tensor, &expected, "relaxed");
     assert_equal(&m.bounds.affine, &expected, "affine");
 }
@@ -78,8 +78,8 @@ fn fcc_is_exact_with_one_grain_in_a_skewed_primitive_cell() {
     let h = D / 2f64.sqrt();
     let p = lattice(Mat3::new(0.0, h, h, h, 0.0, h, h, h, 0.0), &[[0.0; 3]]);
     assert_eq!(p.contacts.len(), 6);
-    let four = analyze(&fcc(), &Settings::default()).unwrap().report.stiffness().copied().unwrap();
-    let one = analyze(&p, &Settings::default()).unwrap().report.stiffness().copied().unwrap();
+    let four = solved(&fcc(), &Settings::default());
+    let one = solved(&p, &Settings::default());
     assert_equal(&one.tensor, &four.tensor, "primitive cell");
 }
 
@@ -118,14 +118,13 @@ fn bcc_is_exact_with_two_grains() {
         f * 4.0 / 9.0 * (k_n - k_t),
         f * (4.0 / 9.0 * (k_n - k_t) + 2.0 / 3.0 * k_t),
     );
-    let m = analyze(&p, &Settings::default()).unwrap().report.stiffness().copied().unwrap();
+    let m = solved(&p, &Settings::default());
     assert_equal(&m.tensor, &expected, "relaxed");
 }
 
 #[test]
 fn frictionless_simple_cubic_has_no_shear_stiffness_and_no_nan() {
     let p = simple_cubic();
-    let settings = Settings { springs: Springs::Normal, ..Settings::default() };
-    let m = analyze(&p, &settings).unwrap().report.stiffness().copied().unwrap();
+    let m = with_springs(&p, Springs::Normal);
     assert_equal(&m.tensor, &cubic(springs(&p).0 / D, 0.0, 0.0), "frictionless");
 }

@@ -1,8 +1,24 @@
 //! Packings for the tests.
 
-use grainlab_core::Contact;
-use grainlab_core::{Cell, Mat3, Material, OVERLAP_LIMIT, Packing, Vec3, contact_search};
+use grainlab_core::results::ElasticStiffness;
+use grainlab_core::{Cell, Contact, Mat3, Material, OVERLAP_LIMIT, Packing, Vec3, contact_search};
+use grainlab_micromechanics::network::{SpringNetwork, Springs};
+use grainlab_micromechanics::{PackingView, Settings, analyze};
 use grainlab_testkit::Random;
+
+/// The stiffness by these settings.
+pub(crate) fn solved(p: &Packing, settings: &Settings) -> ElasticStiffness {
+    analyze(p, settings).unwrap().report.stiffness().copied().unwrap()
+}
+
+/// The stiffness with these springs.
+pub(crate) fn with_springs(p: &Packing, springs: Springs) -> ElasticStiffness {
+    solved(p, &Settings { springs, ..Settings::default() })
+}
+
+pub(crate) fn network(p: &Packing, springs: Springs) -> SpringNetwork {
+    SpringNetwork::new(&PackingView::new(p).unwrap(), springs).unwrap()
+}
 
 /// A packing of spheres of one radius at `positions`, with all contacts in `cell` (images up to one cell
 /// away). With `uniform`, every contact has that overlap, so that all springs are equal.
@@ -60,19 +76,25 @@ pub(crate) fn random(grains: usize, swell: f64, seed: u64) -> Packing {
     let diameter = 2.0e-4;
     let edge = diameter * (grains as f64 * std::f64::consts::FRAC_PI_6 / 0.45).cbrt();
     let cell = Cell::new(Mat3::new(edge, 0.2 * edge, 0.0, 0.0, edge, -0.1 * edge, 0.0, 0.0, edge)).unwrap();
+    let positions = places(&cell, &vec![0.4 * diameter; grains], &mut dice);
+    packing(cell, positions, 0.5 * swell * diameter, 0.1, None)
+}
+
+/// Places of spheres of these radii without overlap, drawn one after the other.
+pub(crate) fn places(cell: &Cell, radii: &[f64], dice: &mut Random) -> Vec<Vec3> {
     let mut positions: Vec<Vec3> = Vec::new();
-    while positions.len() < grains {
+    while positions.len() < radii.len() {
         let x = cell.matrix() * Vec3::new(dice.unit(), dice.unit(), dice.unit());
-        let clear = positions.iter().all(|y| {
+        let clear = positions.iter().zip(radii).all(|(y, r)| {
             let mut s = cell.fractional(&(x - y));
             s.apply(|v| *v -= v.round());
-            (cell.matrix() * s).norm() > 0.8 * diameter
+            (cell.matrix() * s).norm() > r + radii[positions.len()]
         });
         if clear {
             positions.push(x);
         }
     }
-    packing(cell, positions, 0.5 * swell * diameter, 0.1, None)
+    positions
 }
 
 /// The packing without its weakest contacts, with a mean coordination number of `coordination`.

@@ -1,6 +1,7 @@
 //! Spheres of unequal sizes: contacts act at R − δ/2 from each centre, against a dense pseudo-inverse and against the probe.
 
 use crate::dense::dense_stiffness;
+use crate::samples::places;
 use grainlab_core::contact::TangentialLaw;
 use grainlab_core::{Cell, Mat3, Material, Packing, Stiffness, Vec3};
 use grainlab_dem::{Engine, EngineSettings, Observables, TimeStep};
@@ -18,18 +19,7 @@ fn prepared(grains: usize, spread: f64, pressure: f64, seed: u64) -> Packing {
     let radii: Vec<f64> = (0..grains).map(radius).collect();
     let solid: f64 = radii.iter().map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).sum();
     let cell = Cell::cube((solid / 0.3).cbrt()).unwrap();
-    let mut positions: Vec<Vec3> = Vec::new();
-    while positions.len() < grains {
-        let x = cell.matrix() * Vec3::new(dice.unit(), dice.unit(), dice.unit());
-        let clear = |(y, r): (&Vec3, &f64)| {
-            let mut s = cell.fractional(&(x - y));
-            s.apply(|v| *v -= v.round());
-            (cell.matrix() * s).norm() > r + radii[positions.len()]
-        };
-        if positions.iter().zip(&radii).all(clear) {
-            positions.push(x);
-        }
-    }
+    let positions = places(&cell, &radii, &mut dice);
     let setting = EngineSettings {
         friction: 0.2,
         damping: 0.3,

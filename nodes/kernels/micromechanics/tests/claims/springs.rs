@@ -1,18 +1,13 @@
 //! Contacts that have a tangential spring.
 
 use crate::golden::reference;
-use crate::samples::random;
+use crate::samples::{random, with_springs};
 use grainlab_core::contact::RollingResistance;
 use grainlab_core::results::{ElasticStiffness, SpringNote, StiffnessMethod};
 use grainlab_core::{Packing, Vec3};
 use grainlab_micromechanics::network::Springs;
 use grainlab_micromechanics::probe::{StrainProbe, strain_probe};
 use grainlab_micromechanics::{Settings, analyze};
-
-fn measured(packing: &Packing, springs: Springs) -> ElasticStiffness {
-    let settings = Settings { springs, ..Settings::default() };
-    analyze(packing, &settings).unwrap().report.stiffness().copied().unwrap()
-}
 
 fn frictionless() -> Packing {
     Packing { friction: 0.0, ..random(60, 1.35, 5) }
@@ -22,9 +17,9 @@ fn frictionless() -> Packing {
 fn a_packing_without_friction_has_no_tangential_springs_unless_asked_for() {
     let packing = frictionless();
     let as_it_is = analyze(&packing, &Settings::default()).unwrap().report;
-    assert_eq!(as_it_is.stiffness(), Some(&measured(&packing, Springs::Normal)));
+    assert_eq!(as_it_is.stiffness(), Some(&with_springs(&packing, Springs::Normal)));
     assert!(as_it_is.stiffness().unwrap().smooth);
-    let added = measured(&packing, Springs::NormalAndTangential);
+    let added = with_springs(&packing, Springs::NormalAndTangential);
     assert!(!added.smooth);
     let g12 = |s: &ElasticStiffness| s.tensor.transverse_isotropy().g12;
     assert!(g12(&added) > 1.5 * g12(as_it_is.stiffness().unwrap()), "the test shows nothing");
@@ -33,7 +28,7 @@ fn a_packing_without_friction_has_no_tangential_springs_unless_asked_for() {
 #[test]
 fn contacts_that_slide_keep_their_tangential_springs_and_a_note_says_so() {
     let mut packing = Packing { friction: 0.3, ..random(60, 1.3, 4) };
-    let at_rest = measured(&packing, Springs::default());
+    let at_rest = with_springs(&packing, Springs::default());
     assert_eq!(SpringNote::of(&packing, at_rest.method, at_rest.smooth), []);
     for c in packing.contacts.iter_mut().step_by(4) {
         let across = c.normal.cross(&Vec3::x()).normalize();
@@ -41,7 +36,7 @@ fn contacts_that_slide_keep_their_tangential_springs_and_a_note_says_so() {
     }
     let share = packing.sliding_fraction();
     assert!((share - 0.25).abs() < 0.01, "{share}");
-    let sliding = measured(&packing, Springs::default());
+    let sliding = with_springs(&packing, Springs::default());
     assert_eq!((sliding.tensor, sliding.smooth), (at_rest.tensor, false));
     let notes = SpringNote::of(&packing, sliding.method, sliding.smooth);
     assert_eq!(notes, [SpringNote::SlidingStuck { share }]);

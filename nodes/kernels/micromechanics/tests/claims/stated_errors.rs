@@ -2,16 +2,15 @@
 
 use crate::factorised::factorised;
 use crate::golden::reference;
-use crate::samples::{random, thinned};
+use crate::samples::{random, solved, thinned};
 use grainlab_core::Packing;
 use grainlab_core::results::ElasticStiffness;
+use grainlab_micromechanics::Settings;
 use grainlab_micromechanics::network::Springs;
-use grainlab_micromechanics::{Settings, analyze};
 use grainlab_testkit::nightly;
 
 fn measured(packing: &Packing, springs: Springs, tolerance: Option<f64>) -> ElasticStiffness {
-    let settings = Settings { springs, tolerance, ..Settings::default() };
-    analyze(packing, &settings).unwrap().report.stiffness().copied().unwrap()
+    solved(packing, &Settings { springs, tolerance, ..Settings::default() })
 }
 
 /// Expected: every entry within three of its stated errors, at any tolerance, also near isostaticity; the largest stated error is

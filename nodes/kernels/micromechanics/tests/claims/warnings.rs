@@ -195,26 +195,17 @@ fn crystals_are_reported_also_if_simple_cubic_and_none_in_a_cell_of_few_grains()
     }
 }
 
+/// Also where the packing is one of a recording, whose report does not have its geometry.
 #[test]
 fn overlaps_beyond_the_contact_law_and_planes_without_contacts_are_reported() {
-    let deep = changed(|p| *p = lattice(0.12 * DIAMETER));
-    assert!(deep.contains("overlap by more than 10 %") && deep.contains("there are no moduli"), "{deep}");
-    assert!(
-        changed(|p| *p = lattice(0.06 * DIAMETER)).contains("Hertz's law, which is for contacts far smaller")
-    );
-    let open = changed(|p| {
-        *p = lattice(OVERLAP).repeated(5).unwrap();
-        p.contacts.retain(|c| c.image[1] == 0);
-    });
-    assert!(open.contains("open across edge b of the cell"), "{open}");
-}
-
-/// What is said about a packing of a recording, whose report does not have its geometry.
-#[test]
-fn planes_without_contacts_and_deep_overlaps_are_among_the_warnings_about_geometry() {
+    let deep = lattice(0.12 * DIAMETER);
+    let said = changed(|p| p.clone_from(&deep));
+    assert!(said.contains("overlap by more than 10 %") && said.contains("there are no moduli"), "{said}");
+    let hertz = changed(|p| *p = lattice(0.06 * DIAMETER));
+    assert!(hertz.contains("Hertz's law, which is for contacts far smaller"), "{hertz}");
     let mut open = lattice(OVERLAP).repeated(5).unwrap();
     open.contacts.retain(|c| c.image[1] == 0);
-    let deep = lattice(0.12 * DIAMETER);
+    assert!(changed(|p| p.clone_from(&open)).contains("open across edge b of the cell"));
     for (packing, words) in [(open, "open across edge b"), (deep, "overlap by more than 10 %")] {
         let found = geometry_warnings(&packing).join("; ");
         assert!(found.contains(words), "{found}");

@@ -17,7 +17,10 @@ pub(crate) fn wire(v: &Vec3) -> Vector3 {
 /// The speed of the mode with this polarization in `stiffness`, with an error of half a percent.
 fn wave(stiffness: &Stiffness, direction: Vec3, motion: Vec3) -> WaveSpeed {
     let (direction, motion) = (direction.normalize(), motion.normalize());
-    let speed = (stiffness.plane_waves(&direction).meant_by(&motion).modulus / DENSITY).sqrt();
+    let waves = stiffness.plane_waves(&direction);
+    let along = |k: &usize| waves.polarizations[*k].dot(&motion).abs();
+    let nearest = (0..3).max_by(|a, b| along(a).total_cmp(&along(b))).unwrap();
+    let speed = (waves.moduli[nearest] / DENSITY).sqrt();
     WaveSpeed {
         method: WaveSpeed::METHOD_DISPERSION,
         direction: wire(&direction),

@@ -50,18 +50,6 @@ fn the_packings_are_many_and_of_many_recipes_that_taught_nothing() {
     }
 }
 
-#[test]
-fn packings_without_tangential_springs_have_no_estimate() {
-    let all = csv::samples("judged.csv");
-    for s in all.iter().filter(|s| s.preparation == SMOOTH) {
-        let mut observation = s.observation(StrainRatioSource::Zero);
-        observation.conditions.smooth = true;
-        for model in models() {
-            assert_eq!(model.infer(&observation, ours()), Err(EmtError::SmoothGrains));
-        }
-    }
-}
-
 /// Answers of the models of the paper are called extrapolated for grains of another Poisson ratio alone: they are judged, too.
 fn is_answer(e: &Estimate) -> bool {
     let only_grains = || {
