@@ -13,7 +13,7 @@ mod process;
 mod record;
 mod stranger;
 
-pub use bench::{Bench, FOREVER, Kind, exit_of, tiny};
+pub use bench::{Bench, Kind, exit_of, tiny};
 pub use faulty::{Done, Outcome, run_with};
 pub use forger::Forger;
 pub use forgery::{EARLY_ANSWER, ESTIMATES, FORGERIES, Forgery, OLD_RESULT};
