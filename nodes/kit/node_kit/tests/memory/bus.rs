@@ -5,7 +5,7 @@ use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::topics;
 use grainlab_node_kit::{
     Actor, Bus, Demand, Exit, Faults, Hub, MemoryBus, Next, Node, NodeError, Publisher, Subscription, Wake,
-    run_until,
+    Worker, run_until,
 };
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -187,4 +187,20 @@ fn a_lockstep_that_repeats_survives_any_loss_and_the_scheduler_is_deterministic(
     assert_eq!(answers, (1..=100).collect::<Vec<u64>>());
     assert!(asked > 100, "losses were repeated");
     assert_eq!(run(11), (answers, asked, took));
+}
+
+#[test]
+fn on_the_bus_in_memory_a_job_is_done_as_soon_as_it_is_given() {
+    let mut total = 0;
+    let mut worker = Worker::new(&bus_of(&Hub::new(1), "worker"), "sum", move |job: u64| {
+        total += job;
+        total
+    })
+    .unwrap();
+    for (job, sum) in [(2, 2), (5, 7)] {
+        assert!(!worker.is_busy() && worker.result().is_none());
+        worker.give(job);
+        assert!(worker.is_busy());
+        assert_eq!(worker.result(), Some(sum));
+    }
 }
