@@ -12,7 +12,7 @@ use grainlab_node_kit::{
     watchdog,
 };
 use grainlab_recorder::strangers::name;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
@@ -261,10 +261,11 @@ fn watch(
                 is_crowded = true;
                 send(Event::Crowded(sentence));
             }
-            let strange =
-                OF_THE_RUN.iter().flat_map(|t| bus.strange_writers(t).into_iter().map(|w| (t.name, w)));
-            for (topic, writer) in strange {
-                let name = name(&bus.describe(writer));
+            let of_the_run = OF_THE_RUN.iter().filter_map(|t| Some((bus.resolve(t).ok()?, t.name)));
+            let of_the_run: BTreeMap<String, &str> = of_the_run.collect();
+            for offer in bus.strange_offers() {
+                let Some(topic) = of_the_run.get(&offer.topic) else { continue };
+                let name = name(&bus.describe(offer.writer));
                 if named.len() < NAMED && named.insert(name.clone()) {
                     send(Event::Stranger(format!("{name} publishes {topic} in this domain")));
                 }

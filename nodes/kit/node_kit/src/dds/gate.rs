@@ -40,11 +40,6 @@ impl Gate {
         lock(&self.topics).insert(reader, topic.to_owned());
     }
 
-    pub(super) fn remove_reader(&self, reader: Guid) {
-        lock(&self.topics).remove(&reader);
-        lock(&self.announcements).forget(&reader);
-    }
-
     /// Keeps what one of our readers learnt of an admitted writer of another process. Warns of messages that are too large.
     pub(super) fn learnt(&self, writer: Guid, reader: Guid, event: ReceptionEvent) {
         let participant = writer.participant();

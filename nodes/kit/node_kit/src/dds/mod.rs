@@ -5,7 +5,7 @@
 //! - `gate`: which samples are accepted; `processes`: the process of a participant
 //! - `graph`: endpoints of other processes
 //! - `network`: domain and reach; `static_peers`: hosts that are found without multicast
-//! - `handles`: values by handles; `writer`: one writer; `direct`: what ros2-client lacks, from RustDDS
+//! - `writer`: one writer; `direct`: what ros2-client lacks, from RustDDS
 
 mod announcements;
 mod background_reader;
@@ -13,7 +13,6 @@ mod bus;
 mod direct;
 mod gate;
 mod graph;
-mod handles;
 mod inbox;
 mod network;
 mod processes;
