@@ -13,6 +13,7 @@
 //! - `node`: a node as a state machine; `run`: running it as a process; `executor`: running several in one process;
 //!   `housekeeping`: reports and log lines between their steps
 //! - [`PackingNode`]: the template of nodes that measure packings
+//! - [`processes`]: processes of this host and their ports
 //! - `peers`: liveliness of processes; [`watchdog`]: detects failed DDS threads
 //! - `args`, `names`, `parameters`: the ROS 2 command line, names and remaps, parameters; `services`: the standard
 //!   services of a node
@@ -44,6 +45,7 @@ mod packing_node;
 mod parameters;
 mod peers;
 pub mod pingpong;
+pub mod processes;
 mod rosout;
 mod run;
 mod sample;

@@ -1,11 +1,11 @@
 //! Applies the rules of admission in RustDDS's threads.
 
 use super::announcements::Announcements;
-use super::processes;
 use crate::admission::{Admission, Participant, Process, Stranger};
 use crate::announced::Announced;
 use crate::identity::{Identity, Scope};
 use crate::lock::lock;
+use crate::processes;
 use grainlab_msgs::Guid;
 use rustdds::ReceptionEvent;
 use std::collections::BTreeMap;

@@ -2,7 +2,7 @@
 //!
 //! - `bus`: the [`crate::Bus`] itself, with its single wait
 //! - `inbox`: a reader with the samples that were read but not taken; `background_reader`: reads while a node computes
-//! - `gate`: which samples are accepted; `processes`: the process of a participant
+//! - `gate`: which samples are accepted
 //! - `graph`: endpoints of other processes
 //! - `network`: domain and reach; `static_peers`: hosts that are found without multicast
 //! - `writer`: one writer; `direct`: what ros2-client lacks, from RustDDS
@@ -15,7 +15,6 @@ mod gate;
 mod graph;
 mod inbox;
 mod network;
-mod processes;
 mod static_peers;
 mod writer;
 
