@@ -10,7 +10,6 @@ use std::fmt;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
-    /// A node of grainlab.
     Node(NodeKind),
     /// The third-party programs of a launch file.
     Instrument,
@@ -197,7 +196,6 @@ impl PendingResults {
         });
     }
 
-    /// True if a node of the run measures the data of this topic.
     pub(crate) fn is_measured_by_node(&self, topic: &str) -> bool {
         self.kinds.iter().any(|k| k.topic == topic && matches!(k.source, Source::Node(_)))
     }
