@@ -17,7 +17,6 @@
 //! - `peers`: liveliness of processes; [`watchdog`]: detects failed DDS threads
 //! - `args`, `names`, `parameters`: the ROS 2 command line, names and remaps, parameters; `services`: the standard
 //!   services of a node
-//! - [`pingpong`]: the exchange of the lockstep alone, for measurements
 //! - `tool_bus`: the bus of a tool; `free_domain`: domains without participants; `off_the_bus`: runs in one process; `lock`: locks that survive a panic
 //! - `logging`: log lines on stderr; `rosout`: the same on `/rosout`, between steps
 
@@ -44,7 +43,6 @@ mod offer;
 mod packing_node;
 mod parameters;
 mod peers;
-pub mod pingpong;
 pub mod processes;
 mod rosout;
 mod run;
