@@ -38,6 +38,17 @@ pub struct Health {
     pub values: Vec<(String, String)>,
 }
 
+/// Progress of the phase under way, in the report of a simulator.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PhaseReport {
+    /// Name of the phase.
+    pub name: String,
+    /// Share that is done, 0 to 1, if the end is known beforehand.
+    pub share: Option<f64>,
+    /// The end conditions that do not hold.
+    pub unmet: String,
+}
+
 impl Health {
     /// A report without problems.
     pub fn ok(message: impl Into<String>) -> Self {
@@ -59,5 +70,24 @@ impl Health {
     pub fn with(mut self, name: impl Into<String>, value: impl ToString) -> Self {
         self.values.push((name.into(), value.to_string()));
         self
+    }
+
+    /// Report with the progress of a phase.
+    #[must_use]
+    pub fn with_phase(self, phase: &PhaseReport) -> Self {
+        let share = phase.share.map_or_else(String::new, |s| format!("{s:.4}"));
+        self.with("phase", &phase.name).with("unmet", &phase.unmet).with("phase_share", share)
+    }
+
+    /// Returns the value under this name.
+    pub fn value(&self, name: &str) -> Option<&str> {
+        self.values.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())
+    }
+
+    /// Returns the progress of a phase; `None` if this is no report of a simulator.
+    pub fn phase(&self) -> Option<PhaseReport> {
+        let share = self.value("phase_share")?.parse().ok().filter(|s| (0.0..=1.0).contains(s));
+        let [name, unmet] = [self.value("phase")?, self.value("unmet")?].map(str::to_owned);
+        Some(PhaseReport { name, share, unmet })
     }
 }

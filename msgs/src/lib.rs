@@ -34,7 +34,7 @@ pub use decode_error::DecodeError;
 pub use description::{FieldDescription, FieldTypeDescription, MessageDescription, TypeDescription};
 pub use exit::Exit;
 pub use guid::Guid;
-pub use health::{Health, Level};
+pub use health::{Health, Level, PhaseReport};
 pub use message::{FieldInfo, Message, TypeInfo};
 pub use report::{Published, Received, Report};
 pub use topic::{Qos, Topic};

@@ -61,7 +61,6 @@ fn mobilised_friction(m: &msg::MobilisedFriction, contacts: u32) -> Result<Mobil
     Ok(MobilisedFriction { mean: CHECK.share("friction.mean", m.mean)?, histogram: m.histogram })
 }
 
-/// A histogram contains every contact once.
 pub(super) fn every_contact(
     check: Check,
     field: &str,

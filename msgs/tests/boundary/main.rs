@@ -3,6 +3,7 @@
 
 mod estimates;
 mod lockstep;
+mod not_finite;
 mod packing;
 mod results;
 mod structure;

@@ -10,9 +10,6 @@ use grainlab_core::results::{
 use grainlab_core::{SymTensor, Vec3};
 use grainlab_msgs::msg;
 
-const INF: f64 = f64::INFINITY;
-const NAN: f64 = f64::NAN;
-
 fn tensor(seed: f64) -> SymTensor {
     SymTensor::from_voigt(std::array::from_fn(|k| seed + 0.125 * k as f64))
 }
@@ -161,33 +158,13 @@ fn each_fault_of_a_structure_is_refused_by_name() {
         |m| PackingReport::try_from(m),
     );
     refuses_values!(&sent(), |m| PackingReport::try_from(m), "PackingReport", m:
-        m.fabric.principal_axis.contact_anisotropy => NAN,
         m.fabric.principal_axis.contact_anisotropy_stddev[0] => -0.1,
-        m.fabric.principal_axis.angle_stddev[0] => INF,
-        m.fabric.tangential_force_fabric.xy => NAN,
-        m.fabric.fourth_order_fabric[14] => NAN,
         m.fabric.fourth_order_magnitude => -1.0,
-        m.stress_decomposition.normal.xx => INF,
-        m.stress_decomposition.tangential.zz => NAN,
-        m.stress_decomposition.stress_force_fabric[0].contacts.xx => NAN,
-        m.stress_decomposition.stress_force_fabric[0].normal_forces.xx => NAN,
-        m.stress_decomposition.stress_force_fabric[0].branches.yz => INF,
-        m.stress_decomposition.stress_force_fabric[0].tangential_forces.xx => NAN,
         m.fabric.orientation.overlap[9] => -1e-9,
-        m.fabric.orientation.sqrt_overlap[0] => NAN,
-        m.fabric.orientation.contact_fit[0].eps_stddev => NAN,
         m.fabric.orientation.contact_fit[0].chi2_per_dof => -1.0,
-        m.stress_decomposition.strong.fabric.xx => NAN,
-        m.stress_decomposition.weak.fabric.yy => NAN,
-        m.stress_decomposition.strong.contact_anisotropy => NAN,
-        m.stress_decomposition.weak.contact_anisotropy => INF,
-        m.stress_decomposition.strong.stress.xy => NAN,
-        m.stress_decomposition.weak.stress.xy => NAN,
         m.contacts.forces[0].mean_normal => 0.0,
         m.contacts.forces[0].mean_tangential => -1.0,
         m.contacts.forces[0].moments[0] => 0.0,
-        m.contacts.forces[0].moments[2] => NAN,
-        m.contacts.forces[0].largest => NAN,
         m.contacts.friction[0].mean => 1.01,
     );
 }

@@ -16,7 +16,7 @@ use std::rc::Rc;
 use std::time::Duration;
 
 /// Virtual time that exceeds every run.
-pub const FOREVER: Duration = Duration::from_secs(10_000);
+const FOREVER: Duration = Duration::from_secs(10_000);
 
 /// Returns a scene of 40 grains and three packings.
 ///
@@ -99,7 +99,7 @@ impl Bench {
     ///
     /// # Errors
     /// Those of the node.
-    pub(crate) fn start(&self, kind: Kind) -> Result<(Box<dyn Node>, MemoryBus), NodeError> {
+    pub(crate) fn start(&self, kind: Kind) -> Result<Actor, NodeError> {
         let names = Names::new(kind.name()).map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
         let identity = self.run.map(|run| Identity::member_of(run, 1 + kind as u8));
         let mut bus = self.hub.bus_as(names, identity.unwrap_or_default());
@@ -116,14 +116,14 @@ impl Bench {
                 Box::new(simulator.map_err(|e| NodeError::new(Exit::Failure, e.to_string()))?)
             }
         };
-        Ok((node, bus))
+        Ok(Actor::new(node, bus))
     }
 
     /// Creates a node with default settings, on its bus.
     ///
     /// # Panics
     /// If the node cannot be created.
-    pub fn node(&self, kind: Kind) -> (Box<dyn Node>, MemoryBus) {
+    pub fn node(&self, kind: Kind) -> Actor {
         self.start(kind).unwrap_or_else(|e| panic!("{kind:?}: {e}"))
     }
 
@@ -131,14 +131,20 @@ impl Bench {
     ///
     /// # Panics
     /// If it cannot be created.
-    pub fn simulator(
-        &self,
-        settings: &Settings,
-        resume: Option<(Packing, Vec<u8>)>,
-    ) -> (DemSimulator, MemoryBus) {
+    pub fn simulator(&self, settings: &Settings, resume: Option<(Packing, Vec<u8>)>) -> Actor {
         let mut bus = self.bus("dem_simulator");
         let simulator = DemSimulator::new(&mut bus, self.scene.clone(), resume, settings.clone());
-        (simulator.expect("a simulator"), bus)
+        Actor::new(Box::new(simulator.expect("a simulator")), bus)
+    }
+
+    /// Steps the nodes until `done`, or until none can go on; true in the first case.
+    pub fn run(&self, actors: &mut [Actor], done: impl FnMut(&mut [Actor]) -> bool) -> bool {
+        run_until(&self.hub, actors, FOREVER, done)
+    }
+
+    /// Steps the nodes for this time.
+    pub fn pass(&self, actors: &mut [Actor], time: Duration) {
+        run_until(&self.hub, actors, self.hub.now() + time, |_| false);
     }
 
     /// Runs the whole laboratory from beginning to end.
@@ -146,24 +152,14 @@ impl Bench {
     /// # Panics
     /// If the run does not end.
     pub fn whole_run(self, settings: &Settings, resume: Option<(Packing, Vec<u8>)>) -> Record {
-        let (mut recorder, recorder_bus) = self.node(Kind::Recorder);
-        let (mut analyzer, analyzer_bus) = self.node(Kind::Analyzer);
-        let (mut inversion, inversion_bus) = self.node(Kind::Inversion);
-        let (mut servo, servo_bus) = self.node(Kind::Servo);
-        let (mut simulator, simulator_bus) = self.simulator(settings, resume);
-        let mut actors = [
-            Actor::new(&mut *recorder, recorder_bus),
-            Actor::new(&mut *analyzer, analyzer_bus),
-            Actor::new(&mut *inversion, inversion_bus),
-            Actor::new(&mut *servo, servo_bus),
-            Actor::new(&mut simulator, simulator_bus),
-        ];
-        let complete = run_until(&self.hub, &mut actors, FOREVER, |_| self.record.borrow().complete());
+        let others = [Kind::Recorder, Kind::Analyzer, Kind::Inversion, Kind::Servo];
+        let mut actors: Vec<Actor> = others.map(|kind| self.node(kind)).into();
+        actors.push(self.simulator(settings, resume));
+        let complete = self.run(&mut actors, |_| self.record.borrow().complete());
         let ends: Vec<_> = actors.iter().filter_map(|actor| actor.ended.as_ref()).collect();
         assert!(complete, "the run did not end; nodes ended: {ends:?}");
         // Messages in transit belong to the record.
-        let end = self.hub.now() + Duration::from_secs(1);
-        run_until(&self.hub, &mut actors, end, |_| false);
+        self.pass(&mut actors, Duration::from_secs(1));
         self.record.take()
     }
 }

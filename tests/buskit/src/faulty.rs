@@ -5,7 +5,7 @@ use crate::plan::{Event, Plan};
 use crate::process::Process;
 use crate::record::Record;
 use crate::stranger::Stranger;
-use grainlab_node_kit::{Exit, Hub, Identity, MemoryBus, Names, Next, RunId, run_of};
+use grainlab_node_kit::{Exit, Hub, Identity, MemoryBus, Names, RunId, run_of};
 use grainlab_scene::Scene;
 use serde::Serialize;
 use std::iter::Peekable;
@@ -156,12 +156,8 @@ impl Laboratory<'_> {
     /// Time of the next event, if any.
     fn next_moment(&self, now: Duration) -> Option<Duration> {
         let of = |p: &Process| match &p.running {
-            _ if p.ended.is_some() => None,
             None => p.restart_at,
-            Some((_, bus)) => {
-                let wants = if bus.has_data() { now } else { p.due };
-                Some(wants.max(p.stopped_until))
-            }
+            Some(actor) => Some(actor.next_step(now)?.max(p.stopped_until)),
         };
         let processes = self.processes.iter().filter_map(of);
         processes.chain(self.bench.hub.next_arrival()).filter(|at| *at > now).min()
@@ -169,25 +165,14 @@ impl Laboratory<'_> {
 
     /// One step of a process that is due.
     fn step(&mut self, index: usize, now: Duration) -> Result<bool, Outcome> {
-        let process = &mut self.processes[index];
-        if process.ended.is_some() || process.stopped_until > now {
+        let Process { kind, running: Some(actor), stopped_until, .. } = &mut self.processes[index] else {
             return Ok(false);
+        };
+        let stepped = *stopped_until <= now && actor.step(now);
+        match &actor.ended {
+            Some(Err(error)) if stepped => Err(Outcome::Failed(format!("{kind:?}: {error}"))),
+            _ => Ok(stepped),
         }
-        let Some((node, bus)) = &mut process.running else { return Ok(false) };
-        if process.due > now && !bus.has_data() {
-            return Ok(false);
-        }
-        match node.step(bus) {
-            Ok(Next::Again) => process.due = now,
-            Ok(Next::Wait(time)) => process.due = now.saturating_add(time),
-            Ok(Next::Finished(exit)) => process.ended = Some(exit),
-            Err(error) => {
-                let text = format!("{:?}: {error}", process.kind);
-                process.ended = Some(error.exit);
-                return Err(Outcome::Failed(text));
-            }
-        }
-        Ok(true)
     }
 
     fn restart(&mut self, now: Duration) -> Result<bool, Outcome> {
@@ -245,12 +230,10 @@ impl Laboratory<'_> {
 
     fn crash(&mut self, kind: Kind, back_at: Duration) -> Result<(), Outcome> {
         let Some(process) = self.processes.iter_mut().find(|p| p.kind == kind) else { return Ok(()) };
-        if process.running.take().is_none() {
-            return Ok(());
-        }
+        let Some(actor) = process.running.take() else { return Ok(()) };
         match kind {
             Kind::Recorder => return Err(Outcome::Failed("the recorder crashed: exit 3".to_owned())),
-            Kind::Simulator if process.ended == Some(Exit::Done) => return Ok(()),
+            Kind::Simulator if matches!(actor.ended, Some(Ok(Exit::Done))) => return Ok(()),
             Kind::Simulator => {
                 let packings = self.bench.record.borrow().packings();
                 self.crashes.push(packings);

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use system_tests::bodies::{REPRODUCIBLE, assert_same, assert_same_named, assert_same_under, distinct};
+use system_tests::bodies::{REPRODUCIBLE, assert_same, assert_same_named, distinct};
 use system_tests::lab::{Lab, SLOW, grainlab, number, scene_path, summary, undisturbed};
 use system_tests::process::{Process, children, runs, send};
 use system_tests::python;
@@ -172,61 +172,24 @@ fn the_same_nodes_run_by_hand_and_from_a_launch_file() {
     assert_same(&undisturbed(&[]), &run);
 }
 
-/// The launch file of the demo with these ROS arguments for the nodes that `wanted` selects.
-fn launch_file(lab: &Lab, name: &str, arguments: &str, wanted: impl Fn(&str) -> bool) -> String {
-    let mut text = std::fs::read_to_string(launch_folder().join("demo.launch.yaml")).unwrap();
-    for node in NODES.iter().filter(|node| wanted(node)) {
-        let (with, bare) = (format!("run {node} --ros-args"), format!("run {node}"));
-        let given = format!("{bare} --ros-args {arguments}");
-        let found = if text.contains(&with) { with } else { bare };
-        text = text.replace(&found, &given);
-    }
-    lab.write(name, &text).to_string_lossy().into_owned()
-}
-
-#[test]
-fn two_laboratories_in_two_namespaces_of_one_domain_give_the_same_bytes() {
-    let lab = Lab::new();
-    let started = ["left", "right"].map(|side| {
-        let file = launch_file(&lab, &format!("{side}.yaml"), &format!("-r __ns:=/{side}"), |_| true);
-        (side, lab.start_launch("tiny", &[&file, "--out", side]))
-    });
-    for (side, launcher) in started {
-        launcher.ended(LIMIT).assert_code(0);
-        let run = lab.folder().join(side).join("tiny-3-1");
-        assert_same_under(&undisturbed(&[]), &run, &format!("/{side}"));
-    }
-    // Whatever reads the recording finds its topics.
-    lab.run(&["analyze", "left/tiny-3-1"]).assert_code(0);
-    lab.run(&["launch", "--resume", "left/tiny-3-1"]).assert_code(2).assert_says(&["the run is finished"]);
-}
-
 #[test]
 fn a_launch_file_with_a_remap_of_every_topic_ends_and_gives_the_same_bytes() {
     let lab = Lab::new();
     let renamed = |name: &str| format!("/other/my_{}", name.trim_start_matches('/'));
     let rules: Vec<String> = TOPICS.iter().map(|t| format!("-r {}:={}", t.name, renamed(t.name))).collect();
-    let file = launch_file(&lab, "other.launch.yaml", &rules.join(" "), |_| true);
-    let run = lab.launch(Path::new(&scene_path("tiny")), &[&file]);
+    let mut text = std::fs::read_to_string(launch_folder().join("demo.launch.yaml")).unwrap();
+    for node in NODES {
+        let (with, bare) = (format!("run {node} --ros-args"), format!("run {node}"));
+        let found = if text.contains(&with) { with } else { bare.clone() };
+        text = text.replace(&found, &format!("{bare} --ros-args {}", rules.join(" ")));
+    }
+    let file = lab.write("other.launch.yaml", &text);
+    let run = lab.launch(Path::new(&scene_path("tiny")), &[&file.to_string_lossy()]);
     assert_same_named(&undisturbed(&[]), &run, renamed);
     let summary = summary(&run);
     assert_eq!(summary["states"].as_array().unwrap().len(), 2, "{summary}");
     assert_eq!(summary["warnings"], json!([]));
     assert!(summary["exchanges"].as_u64() > Some(0), "{summary}");
-}
-
-#[test]
-fn a_launch_file_whose_processes_would_not_meet_is_refused_before_anything_is_started() {
-    let lab = Lab::new();
-    for (node, rule, topic) in [
-        ("servo_controller", "-r __ns:=/left", "stress"),
-        ("emt_inversion", "-r microstructure:=/other", "microstructure"),
-        ("recorder", "-r packing:=grains", "packing"),
-    ] {
-        let file = launch_file(&lab, "apart.launch.yaml", rule, |name| name == node);
-        lab.run(&["launch", &file]).assert_code(2).assert_says(&[&format!("the topic {topic} is ")]);
-        assert!(!lab.folder().join("recordings").exists());
-    }
 }
 
 #[test]

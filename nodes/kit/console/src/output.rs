@@ -202,7 +202,6 @@ impl Table {
 #[derive(Debug)]
 pub struct CsvText {
     lines: csv::Writer<Vec<u8>>,
-    /// Digits of the last number.
     digits: String,
 }
 

@@ -1,8 +1,8 @@
 //! Processes that the tests in `tests/process` start, by the name of their role.
 
+use grainlab_buskit::pingpong::bus_pong;
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::topics;
-use grainlab_node_kit::pingpong::bus_pong;
 use grainlab_node_kit::{
     Bus, DdsBus, Demand, Exit, Health, Names, Network, Next, Node, NodeError, NodeSpec, Publisher, RosArgs,
     Scope, Subscription, SubscriptionId, run_node,

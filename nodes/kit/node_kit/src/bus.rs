@@ -67,9 +67,6 @@ pub trait Bus {
     /// Subscribes to a topic. Each of several subscriptions to one topic receives every sample.
     fn subscribe(&mut self, topic: &Topic, demand: Demand) -> Result<SubscriptionId, BusError>;
 
-    /// Ends a subscription: writers keep nothing for it any longer, and its handle is not valid any longer.
-    fn unsubscribe(&mut self, subscription: SubscriptionId);
-
     /// Publishes one serialized message, encapsulation header included, and returns its RTPS sequence number.
     ///
     /// Waits at most some milliseconds for a reliable reader that is far behind, then drops the sample and returns
@@ -124,9 +121,6 @@ pub trait Bus {
     /// Writers on the resolved topic that are not this process's own, of those that [`Bus::identity`] counts, sorted,
     /// as known at the last [`Bus::wait`].
     fn foreign_writers(&self, topic: &Topic) -> Vec<Guid>;
-
-    /// Writers on the resolved topic whose samples are not taken, sorted, as known at the last [`Bus::wait`].
-    fn strange_writers(&self, topic: &Topic) -> Vec<Guid>;
 
     /// Participants with a writer on the resolved topic whose messages are not read: they are of another type, or of another
     /// definition of the type. Sorted.

@@ -34,11 +34,6 @@ impl Demand {
         let depth = self.depth.max(1);
         Self { reliable: self.reliable && topic.qos.reliable, depth, burst: self.burst.max(depth) }
     }
-
-    /// True if a subscription with this demand also serves `other`.
-    pub fn covers(self, other: Self) -> bool {
-        self.reliable >= other.reliable && self.depth >= other.depth && self.burst >= other.burst
-    }
 }
 
 #[cfg(test)]

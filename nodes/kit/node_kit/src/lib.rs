@@ -13,10 +13,10 @@
 //! - `node`: a node as a state machine; `run`: running it as a process; `executor`: running several in one process;
 //!   `housekeeping`: reports and log lines between their steps
 //! - [`PackingNode`]: the template of nodes that measure packings
+//! - [`processes`]: processes of this host and their ports
 //! - `peers`: liveliness of processes; [`watchdog`]: detects failed DDS threads
 //! - `args`, `names`, `parameters`: the ROS 2 command line, names and remaps, parameters; `services`: the standard
 //!   services of a node
-//! - [`pingpong`]: the exchange of the lockstep alone, for measurements
 //! - `tool_bus`: the bus of a tool; `free_domain`: domains without participants; `off_the_bus`: runs in one process; `lock`: locks that survive a panic
 //! - `logging`: log lines on stderr; `rosout`: the same on `/rosout`, between steps
 
@@ -43,7 +43,7 @@ mod offer;
 mod packing_node;
 mod parameters;
 mod peers;
-pub mod pingpong;
+pub mod processes;
 mod rosout;
 mod run;
 mod sample;

@@ -153,7 +153,6 @@ impl LogSettings {
         self.logger_levels.iter().map(|(_, level)| *level).fold(self.level, Ord::max)
     }
 
-    /// The level of a module.
     fn level_of(&self, target: &str) -> LevelFilter {
         let named = |logger: &str| {
             target.strip_prefix(logger).is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))

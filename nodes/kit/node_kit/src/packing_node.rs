@@ -171,7 +171,6 @@ impl<M: Measure> PackingNode<M> {
         })
     }
 
-    /// Publishes a result.
     fn conclude(&mut self, bus: &mut dyn Bus, outcome: Result<M::Found, M::Error>) -> Result<(), BusError> {
         self.seconds = bus.now().saturating_sub(self.began).as_secs_f64();
         match outcome {

@@ -195,7 +195,7 @@ fn each_of_two_subscriptions_to_one_topic_gets_everything() {
     let strong = subscribe(&mut b, Demand::reliable(1000)).unwrap();
     let weak = subscribe(&mut b, Demand::best_effort(100)).unwrap();
     until(&mut b, "match", |b| b.writers(strong.id()) == 1 && b.writers(weak.id()) == 1);
-    until(&mut a, "match", |a| a.readers(publisher.id()) == 1);
+    until(&mut a, "match", |a| a.readers(publisher.id()) == 2);
     for n in 1..=20 {
         publisher.publish(&mut a, &rate(n)).unwrap();
     }

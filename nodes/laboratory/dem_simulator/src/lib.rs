@@ -23,5 +23,5 @@ mod settings;
 mod speculative_step;
 mod start;
 
-pub use node::{DemSimulator, PHASE, PHASE_SHARE, SAVED_WITHIN, UNMET};
+pub use node::{DemSimulator, SAVED_WITHIN};
 pub use settings::{Settings, parameters};

@@ -13,19 +13,12 @@ use grainlab_experiment::{ExperimentError, Simulation};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::msg::{self, RunState, StrainRate, Stress};
 use grainlab_msgs::tf2_msgs::TFMessage;
-use grainlab_msgs::{to_cdr, topics};
+use grainlab_msgs::{PhaseReport, to_cdr, topics};
 use grainlab_node_kit::{
     BulkPublisher, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription,
 };
 use grainlab_scene::Scene;
 use std::time::Duration;
-
-/// Key of the diagnostics with the end conditions of the phase that do not hold.
-pub const UNMET: &str = "unmet";
-/// Key of the diagnostics with the share of the phase that is done, 0 to 1; empty if its end is not known beforehand.
-pub const PHASE_SHARE: &str = "phase_share";
-/// Key of the diagnostics with the name of the phase.
-pub const PHASE: &str = "phase";
 
 /// Period of `run_state` where nothing happens, wall time.
 pub(crate) const BEAT: Duration = Duration::from_secs(1);
@@ -285,7 +278,9 @@ impl Node for DemSimulator {
         let phase = self.run.path().phase(self.run.scene()).map_or("none", |p| p.name.as_str());
         let (counts, steps) =
             (self.lockstep.counts, self.run.engine().steps().saturating_sub(self.first_step));
-        let share = self.run.phase_share().filter(|_| self.stage == Stage::Running);
+        let is_running = self.stage == Stage::Running;
+        let share = self.run.phase_share().filter(|_| is_running);
+        let unmet = if is_running { self.run.unmet() } else { String::new() };
         let computing = self.computing.as_secs_f64();
         let particle_steps = steps as f64 * f64::from(self.run.scene().grains);
         let message = match self.stage {
@@ -295,9 +290,7 @@ impl Node for DemSimulator {
             Stage::Finished => "finished".into(),
         };
         Health::ok(message)
-            .with(PHASE, phase)
-            .with(UNMET, if self.stage == Stage::Running { self.run.unmet() } else { String::new() })
-            .with(PHASE_SHARE, share.map_or_else(String::new, |s| format!("{s:.4}")))
+            .with_phase(&PhaseReport { name: phase.to_owned(), share, unmet })
             .with("step", self.run.engine().steps())
             .with("steps", steps)
             .with("scene", &self.run.scene().name)

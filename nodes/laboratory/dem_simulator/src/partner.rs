@@ -54,7 +54,6 @@ pub(crate) fn different(writers: &[Guid]) -> Vec<Guid> {
 }
 
 impl Partner {
-    /// For the simulator with this writer of stress.
     pub(crate) fn new(stress: Guid) -> Self {
         Self { stress, current: None, named: BTreeSet::new(), ignored: 0 }
     }

@@ -20,7 +20,6 @@ pub(crate) struct Question {
 }
 
 impl Question {
-    /// The constraints of a request.
     pub(crate) fn of(request: &ServoRequest) -> Self {
         Self {
             sequence: request.sequence,

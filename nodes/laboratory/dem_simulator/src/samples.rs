@@ -97,7 +97,6 @@ impl Samples {
 struct Due(Option<(u64, u64)>);
 
 impl Due {
-    /// True if this request is a sample.
     fn at(&mut self, sequence: u64, step: u64, grains: u32) -> bool {
         let due = self.0.is_none_or(|(last, at)| {
             let particle_steps = step.saturating_sub(at).saturating_mul(u64::from(grains));

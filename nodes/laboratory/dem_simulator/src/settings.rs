@@ -122,7 +122,6 @@ impl Settings {
         }
     }
 
-    /// The compute settings of a run of `grains` grains.
     pub(crate) fn compute(&self, grains: usize) -> Result<Compute, ComputeError> {
         let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
         let threads = self.threads.map_or(Compute::useful_threads(grains, cores), NonZeroUsize::get);

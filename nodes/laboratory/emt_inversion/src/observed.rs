@@ -7,7 +7,6 @@ use grainlab_msgs::boundary::BoundaryError;
 /// Moduli with their state, and details of how they were obtained.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Observed {
-    /// The input of the models.
     pub(crate) observation: Observation,
     /// Misfit of the data about the moduli; `None` without degrees of freedom.
     pub(crate) misfit: Option<Misfit>,
@@ -28,10 +27,7 @@ pub(crate) enum Unobservable {
         "the moduli given are those about e3, and without the full stiffness they do not determine those about \
          ({:.4}, {:.4}, {:.4})", axis[0], axis[1], axis[2]
     )]
-    NoStiffness {
-        /// Axis that was set.
-        axis: [f64; 3],
-    },
+    NoStiffness { axis: [f64; 3] },
     /// Moduli, strain ratios and anisotropy refer to one axis, and another one is set.
     #[error(
         "these moduli and their gamma/Delta are about ({:.4}, {:.4}, {:.4}), and the parameter axis is \
@@ -41,7 +37,6 @@ pub(crate) enum Unobservable {
     OtherAxis {
         /// The axis of the moduli.
         stated: [f64; 3],
-        /// The axis set.
         asked: [f64; 3],
     },
     /// No medium has these wave speeds.

@@ -122,10 +122,6 @@ impl Scene {
     }
 }
 
-fn value<'a>(report: &'a Report, key: &str) -> &'a str {
-    report.health.values.iter().find(|(name, _)| name == key).map_or("", |(_, value)| value)
-}
-
 #[test]
 fn an_analyzer_beats_while_it_analyses_answers_in_order_and_leaves_at_once() {
     let mut scene = Scene::new();
@@ -135,14 +131,14 @@ fn an_analyzer_beats_while_it_analyses_answers_in_order_and_leaves_at_once() {
     while beats < 3 {
         let report = scene.report();
         if report.health.message == "analysing the packing of step 1" {
-            assert_eq!(value(&report, "analysing"), "1");
+            assert_eq!(report.health.value("analysing"), Some("1"));
             beats += 1;
         }
     }
     // A second large packing and a small one arrive while the first is analysed.
     scene.publish(&Packing { step: 2, ..large });
     scene.publish(&Packing { step: 3, ..Packing::default() });
-    while value(&scene.report(), "waiting") != "2" {}
+    while scene.report().health.value("waiting") != Some("2") {}
     assert!(scene.measured.take_valid(&mut scene.bus).unwrap().is_none(), "the gate is closed");
     for step in 1..=3 {
         scene.gate.send(()).unwrap();
@@ -150,7 +146,7 @@ fn an_analyzer_beats_while_it_analyses_answers_in_order_and_leaves_at_once() {
     }
     // Stopped in the middle of the next one, it ends without a result.
     scene.publish(&Packing { step: 4, ..Packing::default() });
-    while value(&scene.report(), "analysing") != "4" {}
+    while scene.report().health.value("analysing") != Some("4") {}
     scene.stop.store(true, Ordering::Relaxed);
     assert_eq!(scene.node.join().unwrap(), Exit::Interrupted);
     assert!(scene.measured.take_valid(&mut scene.bus).unwrap().is_none());

@@ -186,7 +186,6 @@ impl Running {
         self.link().program.tell(&format!("run 0 post no\n{HOLD}"))
     }
 
-    /// Returns to a saved state.
     fn read_restart(&mut self, own_state: &[u8]) -> Result<(), ExperimentError> {
         let at = own_state.iter().position(|b| *b == b'\n').unwrap_or(own_state.len());
         let saved =

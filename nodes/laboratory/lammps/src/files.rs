@@ -42,9 +42,7 @@ pub(crate) const CONTACT_COLUMNS: &str = "c_ids[1] c_ids[2] c_contacts[1] c_cont
 
 /// Files that a packing is read from.
 pub(crate) struct Dumps<'a> {
-    /// Dump of grains with [`GRAIN_COLUMNS`].
     pub(crate) grains: &'a Path,
-    /// Dump of contacts with [`CONTACT_COLUMNS`].
     pub(crate) contacts: &'a Path,
     pub(crate) frame: Frame,
     /// Angular velocity of the affine motion that spins contain, 1/s.

@@ -33,7 +33,6 @@ pub(crate) struct Program {
     child: Child,
     input: Option<ChildStdin>,
     output: Receiver<String>,
-    /// The last lines of its output.
     last: VecDeque<String>,
     command: String,
     /// Entry of the environment of all its processes, and of no others.

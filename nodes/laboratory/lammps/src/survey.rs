@@ -25,7 +25,6 @@ pub(crate) struct Survey {
 /// The load of contacts.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Load {
-    /// Number of contacts.
     pub(crate) contacts: f64,
     /// Trace of their virial, J: normal forces times distances.
     pub(crate) virial: f64,

@@ -65,30 +65,23 @@ impl Child {
     ) -> Result<(), Failure> {
         let failed = |e: io::Error| Failure::failed(format!("{}: cannot be started: {e}", self.plan.name));
         let log = open_log(logs, &self.plan.name).map_err(failed)?;
-        let ours = self.plan.node.is_some();
-        let words = if ours { program().map_err(failed)? } else { vec![self.plan.program.clone().into()] };
-        let mut command = Command::new(&words[0]);
-        if ours {
+        let mut command = command_of(&self.plan, run.domain).map_err(failed)?;
+        if self.plan.node.is_some() {
             command.env(VARIABLE, "1");
         } else {
             end_with_launcher(&mut command);
         }
-        command.args(&words[1..]).args(&self.plan.arguments);
         if let Some(recording) = &self.resume_from {
             let path = serde_json::Value::from(recording.to_string_lossy());
             command.args(["--ros-args", "-p", &format!("resume:={path}")]);
         }
         command
-            .envs(self.plan.environment.iter().map(|(name, value)| (name, value)))
-            .env("ROS_DOMAIN_ID", run.domain.to_string())
             .env(RUN_VARIABLE, run.id.to_string())
             .env(MEMBER_VARIABLE, self.member.to_string())
             .env(ROOT_VARIABLE, std::process::id().to_string())
             .stdin(Stdio::piped())
             .stdout(log.try_clone().map_err(failed)?)
-            .stderr(log)
-            // A group of its own: Ctrl-C reaches the launcher only, which ends the children in order.
-            .process_group(0);
+            .stderr(log);
         let mut process = command.spawn().map_err(failed)?;
         self.pid = process.id();
         self.last_pid = self.pid.unwrap_or(0);
@@ -124,6 +117,19 @@ impl Child {
             unsafe { libc::kill(pid, signal) };
         }
     }
+}
+
+/// The command of an entry of the plan. Its group is its own: Ctrl-C reaches the launcher only, which ends the processes in order.
+pub(crate) fn command_of(plan: &NodePlan, domain: u16) -> io::Result<Command> {
+    let words = if plan.node.is_some() { program()? } else { vec![plan.program.clone().into()] };
+    let mut command = Command::new(&words[0]);
+    command
+        .args(&words[1..])
+        .args(&plan.arguments)
+        .envs(plan.environment.iter().map(|(name, value)| (name, value)))
+        .env("ROS_DOMAIN_ID", domain.to_string())
+        .process_group(0);
+    Ok(command)
 }
 
 /// A third-party program does not watch its standard input: the kernel ends it when the launcher has ended.

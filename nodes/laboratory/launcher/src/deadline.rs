@@ -85,7 +85,6 @@ impl Logs {
         Self(plans.iter().map(name).collect())
     }
 
-    /// The names of the processes of `source`.
     pub(super) fn names(&self, source: Source) -> impl Iterator<Item = &str> {
         self.0.iter().filter(move |(of, _)| *of == source).map(|(_, name)| name.as_str())
     }

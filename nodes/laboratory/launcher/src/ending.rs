@@ -31,7 +31,6 @@ enum Ending {
     Farewell,
     /// The simulator saves its state, and sends its last report.
     Save,
-    /// The recorder ends.
     Record,
     /// Processes that still run are ended by SIGTERM and SIGKILL.
     Exit,

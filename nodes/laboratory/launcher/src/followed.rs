@@ -47,14 +47,12 @@ pub(super) enum Verdict {
     Pending(Option<Deadline>),
 }
 
-/// Knowledge of a run.
 pub(super) struct Followed {
     pub(super) progress: Progress,
     pub(super) outline: Outline,
     pub(super) begun: bool,
     /// Last message of the simulator on what it does or waits for.
     simulator: Option<String>,
-    /// The simulator was discovered.
     simulator_joined: bool,
     /// That the DDS domain is full, in words.
     crowding: Option<String>,

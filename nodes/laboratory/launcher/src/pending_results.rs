@@ -10,7 +10,6 @@ use std::fmt;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
-    /// A node of grainlab.
     Node(NodeKind),
     /// The third-party programs of a launch file.
     Instrument,
@@ -197,7 +196,6 @@ impl PendingResults {
         });
     }
 
-    /// True if a node of the run measures the data of this topic.
     pub(crate) fn is_measured_by_node(&self, topic: &str) -> bool {
         self.kinds.iter().any(|k| k.topic == topic && matches!(k.source, Source::Node(_)))
     }
@@ -249,20 +247,24 @@ mod tests {
         PendingResults::of(&nodes.iter().map(plan).collect::<Vec<_>>())
     }
 
+    /// Data of a packing, measured and inverted.
+    fn answered(pending: &mut PendingResults, source: &'static str, step: u64) {
+        pending.measured(source, step);
+        pending.inverted(source, step, 2);
+    }
+
     #[test]
     fn an_instrument_that_measured_one_packing_is_waited_for_at_the_last_and_is_missed_if_it_left() {
         let foreign = instrument();
         let ours = NodePlan { node: Some(NodeKind::FabricAnalyzer), ..foreign.clone() };
         let mut d = PendingResults::of(&[ours, foreign]);
         for step in [7, 9] {
-            d.measured("packing_report", step);
-            d.inverted("packing_report", step, 2);
+            answered(&mut d, "packing_report", step);
         }
         d.measured("wave_speeds", 0);
         assert_eq!(d.state_of(9), ResultState::Complete, "speeds of no packing");
         let mut of_start = PendingResults::of(&[instrument()]);
-        of_start.measured("moduli", 9);
-        of_start.inverted("moduli", 9, 2);
+        answered(&mut of_start, "moduli", 9);
         of_start.measured_start();
         assert_eq!(of_start.state_of(9), ResultState::Open(Source::Instrument));
         d.measured("wave_speeds", 7);
@@ -273,8 +275,7 @@ mod tests {
         d.inverted("wave_speeds", 9, 2);
         assert_eq!(d.state_of(9), ResultState::Settling);
         assert_eq!(d.state_of(11), ResultState::Open(ANALYZER));
-        d.measured("packing_report", 11);
-        d.inverted("packing_report", 11, 2);
+        answered(&mut d, "packing_report", 11);
         d.instruments_left();
         assert_eq!((d.state_of(9), d.state_of(11)), (ResultState::Complete, ResultState::Left));
     }
@@ -292,8 +293,7 @@ mod tests {
         assert!(d.silent_programs().unwrap().contains("from instrument before"));
         d.remember(&RecordedSpeeds { measured: [7, 9].into(), inverted: [7].into() });
         for step in [7, 9, 11] {
-            d.measured("moduli", step);
-            d.inverted("moduli", step, 2);
+            answered(&mut d, "moduli", step);
         }
         assert_eq!(d.silent_programs(), None);
         assert_eq!(d.state_of(7), ResultState::Settling);
@@ -304,21 +304,15 @@ mod tests {
     #[test]
     fn data_of_a_program_that_until_inverted_names_are_waited_for() {
         let given = ["run", "dem_simulator", "--ros-args", "-p", "until_inverted:=[packing_report,moduli]"];
+        let node = |node, name: &str| NodePlan { node, name: name.to_owned(), ..NodePlan::default() };
         let simulator = NodePlan {
-            name: "dem_simulator".to_owned(),
-            node: Some(NodeKind::DemSimulator),
-            program: "grainlab".to_owned(),
             arguments: given.map(str::to_owned).into(),
-            respawn: false,
-            environment: Vec::new(),
-            ends_all: false,
+            ..node(Some(NodeKind::DemSimulator), "dem_simulator")
         };
-        let node = |node, name: &str| NodePlan { node, name: name.to_owned(), ..simulator.clone() };
-        let analyzer = NodePlan { arguments: Vec::new(), ..node(Some(NodeKind::FabricAnalyzer), "analyzer") };
-        let servo = NodePlan { arguments: Vec::new(), ..node(Some(NodeKind::ServoController), "servo") };
-        let mut d = PendingResults::of(&[simulator.clone(), analyzer, servo, node(None, "watch")]);
-        d.measured("packing_report", 9);
-        d.inverted("packing_report", 9, 2);
+        let analyzer = node(Some(NodeKind::FabricAnalyzer), "analyzer");
+        let servo = node(Some(NodeKind::ServoController), "servo");
+        let mut d = PendingResults::of(&[simulator, analyzer, servo, node(None, "watch")]);
+        answered(&mut d, "packing_report", 9);
         assert_eq!(d.state_of(9), ResultState::Open(Source::Instrument));
         assert!(
             d.silent_programs()
@@ -336,13 +330,11 @@ mod tests {
     fn as_many_shots_are_waited_for_as_every_other_packing_has() {
         let program = instrument();
         let mut d = PendingResults::of(&[program]);
-        d.measured("moduli", 9);
-        d.inverted("moduli", 9, 2);
+        answered(&mut d, "moduli", 9);
         (0..3).for_each(|_| d.measured("wave_speeds", 7));
         for shot in 0..3 {
             assert_eq!(d.state_of(9), ResultState::Open(Source::Instrument), "{shot}");
-            d.measured("wave_speeds", 9);
-            d.inverted("wave_speeds", 9, 2);
+            answered(&mut d, "wave_speeds", 9);
         }
         assert_eq!(d.state_of(9), ResultState::Settling);
         d.measured("wave_speeds", 9);
@@ -353,8 +345,7 @@ mod tests {
     fn with_a_probe_both_kinds_of_data_must_be_inverted() {
         let mut d = pending(&[NodeKind::FabricAnalyzer, NodeKind::AcousticProbe]);
         assert_eq!(d.state_of(7), ResultState::Open(ANALYZER));
-        d.measured("packing_report", 7);
-        d.inverted("packing_report", 7, 2);
+        answered(&mut d, "packing_report", 7);
         assert_eq!(d.state_of(7), ResultState::Open(PROBE));
         d.measured("wave_speeds", 7);
         assert_eq!(d.state_of(7), ResultState::Measured(PROBE));
@@ -389,8 +380,7 @@ mod tests {
     #[test]
     fn every_inversion_of_the_run_is_waited_for() {
         let mut d = pending(&[NodeKind::FabricAnalyzer, NodeKind::EmtInversion, NodeKind::EmtInversion]);
-        d.measured("packing_report", 7);
-        d.inverted("packing_report", 7, 2);
+        answered(&mut d, "packing_report", 7);
         d.inverted("packing_report", 7, 2);
         assert_eq!(d.state_of(7), ResultState::Measured(ANALYZER));
         d.inverted("packing_report", 7, 3);
@@ -411,8 +401,7 @@ mod tests {
     fn without_an_analyzer_the_moduli_of_another_program_are_waited_for() {
         let mut d = pending(&[NodeKind::EmtInversion]);
         assert_eq!(d.state_of(7), ResultState::Open(ANALYZER));
-        d.measured("moduli", 7);
-        d.inverted("moduli", 7, 2);
+        answered(&mut d, "moduli", 7);
         assert_eq!(d.state_of(7), ResultState::Complete);
     }
 }

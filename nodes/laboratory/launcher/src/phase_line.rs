@@ -5,13 +5,11 @@ use grainlab_console::duration;
 /// Columns that stay free: for the `^C` of an interrupt, and because a full line begins another one.
 const MARGIN: usize = 3;
 
-/// Columns of the bar.
 const BAR: usize = 20;
 
 /// Columns of a bar that is left out because it would be shorter.
 const LEAST_BAR: usize = 6;
 
-/// Columns of the percentage.
 const PERCENT: usize = 6;
 
 /// Columns of a name in a table of names.
@@ -22,7 +20,6 @@ const NAME: usize = 18;
 pub(crate) struct PhaseName {
     /// Number of the phase, from 1.
     pub(crate) number: u32,
-    /// Number of phases.
     pub(crate) of: usize,
     pub(crate) name: String,
 }

@@ -19,7 +19,6 @@ impl PlanError {
         if self.0.starts_with("line ") { self } else { Self(format!("line {line}: {self}")) }
     }
 
-    /// The fault of an included file.
     pub(crate) fn included(self, file: &str) -> Self {
         Self(format!("include {file}: {self}"))
     }

@@ -1,8 +1,8 @@
 //! Progress of a run for the user, on stderr: a line for each phase, which on a terminal shows its progress while it runs.
 
 use crate::phase_line::{self, PhaseName, Rest};
-use crate::watch::PhaseReport;
 use grainlab_console::{Pace, Terminal, draw_live_line, duration, erase_live_line, say, say_line};
+use grainlab_msgs::PhaseReport;
 use grainlab_msgs::msg::RunState;
 use std::time::{Duration, Instant};
 
@@ -31,7 +31,6 @@ struct Phase {
     /// When it was first seen, and the step.
     began: Instant,
     first_step: u64,
-    /// Last report of the simulator.
     report: PhaseReport,
     pace: Pace<PACE>,
 }

@@ -1,6 +1,7 @@
 //! Detects processes of a run that were stopped by a signal: Ctrl-Z, a debugger, `kill -STOP`.
 
 use super::child::Child;
+use grainlab_node_kit::processes::Status;
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
@@ -28,7 +29,7 @@ impl Stopped {
         let mut changes = Changes::default();
         let mut now = BTreeSet::new();
         for (name, pid) in running {
-            match (is_stopped(pid), self.pids.contains(&pid)) {
+            match (Status::of(pid).is_some_and(|s| s.is_stopped()), self.pids.contains(&pid)) {
                 (true, known) => {
                     now.insert(pid);
                     if !known {
@@ -57,16 +58,6 @@ impl Stopped {
     }
 }
 
-/// The state of a process is the third field of `/proc/PID/stat`: T where a signal stopped it, t where a debugger did.
-fn is_stopped(pid: u32) -> bool {
-    // The second field, the name, may hold any bytes.
-    let stat = std::fs::read(format!("/proc/{pid}/stat")).unwrap_or_default();
-    let state = String::from_utf8_lossy(&stat)
-        .rsplit_once(')')
-        .and_then(|(_, behind)| behind.trim_start().chars().next());
-    matches!(state, Some('T' | 't'))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -80,29 +71,13 @@ mod tests {
             assert_eq!(unsafe { libc::kill(pid as i32, signal) }, 0);
             std::thread::sleep(std::time::Duration::from_millis(100));
         };
-        assert!(!is_stopped(pid));
+        let is_stopped = || Status::of(pid).unwrap().is_stopped();
+        assert!(!is_stopped());
         signal(libc::SIGSTOP);
-        assert!(is_stopped(pid));
+        assert!(is_stopped());
         signal(libc::SIGCONT);
-        assert!(!is_stopped(pid));
+        assert!(!is_stopped());
         child.kill().unwrap();
         child.wait().unwrap();
-    }
-
-    #[test]
-    fn a_process_is_found_to_be_stopped_whatever_bytes_its_name_has() {
-        use std::io::{BufRead, BufReader};
-        let script = r"printf 'a\377)' > /proc/$$/comm; echo named; read end";
-        let mut shell = std::process::Command::new("sh");
-        let pipes = shell.args(["-c", script]).stdin(std::process::Stdio::piped());
-        let mut child = pipes.stdout(std::process::Stdio::piped()).spawn().unwrap();
-        BufReader::new(child.stdout.take().unwrap()).read_line(&mut String::new()).unwrap();
-        // SAFETY: kill takes two integers. The child was not waited for, so the id is its own.
-        assert_eq!(unsafe { libc::kill(child.id() as i32, libc::SIGSTOP) }, 0);
-        std::thread::sleep(std::time::Duration::from_millis(100));
-        let found = is_stopped(child.id());
-        child.kill().unwrap();
-        child.wait().unwrap();
-        assert!(found);
     }
 }

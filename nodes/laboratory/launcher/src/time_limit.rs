@@ -13,7 +13,6 @@ pub(crate) struct TimeLimit {
 }
 
 impl TimeLimit {
-    /// A time limit from now on.
     pub(crate) fn new(time: Duration) -> Self {
         Self { left: time, looked: Instant::now() }
     }

@@ -3,17 +3,16 @@
 use crate::child::Run;
 use grainlab_acoustic_probe::{DECLINED_STEP, MEASURING};
 use grainlab_console::{Failure, say};
-use grainlab_dem_simulator::{PHASE, PHASE_SHARE, UNMET};
 use grainlab_emt::{Status, recommended};
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Estimate, Microstructure, Moduli, PackingReport, RunState, WaveSpeeds};
-use grainlab_msgs::{Topic, stamp, topics};
+use grainlab_msgs::{PhaseReport, Topic, stamp, topics};
 use grainlab_node_kit::{
     Bus, BusError, DdsBus, Demand, Identity, Names, Participant, Report, Subscription, bus_named, member_of,
     watchdog,
 };
 use grainlab_recorder::strangers::name;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
@@ -83,16 +82,6 @@ pub(crate) enum Event {
     Stranger(String),
     /// The watch itself failed.
     Failed(String),
-}
-
-/// Progress of a phase, as the simulator reports it.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct PhaseReport {
-    pub(crate) name: String,
-    /// Share that is done, 0 to 1, if its end is known beforehand.
-    pub(crate) share: Option<f64>,
-    /// The end conditions that do not hold.
-    pub(crate) unmet: String,
 }
 
 /// A thread with its own bus.
@@ -225,13 +214,14 @@ impl RunSubscriptions {
         }
         while let Some((message, _)) = self.reports.take_valid(bus)? {
             for report in Report::from_message(&message) {
-                if let Some(step) = step_under(DECLINED_STEP, &report) {
+                let step_under = |key| report.health.value(key)?.parse().ok();
+                if let Some(step) = step_under(DECLINED_STEP) {
                     send(Event::Declined(topics::WAVE_SPEEDS.name, step));
                 }
-                if let Some(step) = step_under(MEASURING, &report) {
+                if let Some(step) = step_under(MEASURING) {
                     send(Event::Probing(step));
                 }
-                if let Some(phase) = phase_of(&report) {
+                if let Some(phase) = report.health.phase() {
                     send(Event::Phase(phase));
                     send(Event::Simulator(report.health.message.clone()));
                 }
@@ -271,10 +261,11 @@ fn watch(
                 is_crowded = true;
                 send(Event::Crowded(sentence));
             }
-            let strange =
-                OF_THE_RUN.iter().flat_map(|t| bus.strange_writers(t).into_iter().map(|w| (t.name, w)));
-            for (topic, writer) in strange {
-                let name = name(&bus.describe(writer));
+            let of_the_run = OF_THE_RUN.iter().filter_map(|t| Some((bus.resolve(t).ok()?, t.name)));
+            let of_the_run: BTreeMap<String, &str> = of_the_run.collect();
+            for offer in bus.strange_offers() {
+                let Some(topic) = of_the_run.get(&offer.topic) else { continue };
+                let name = name(&bus.describe(offer.writer));
                 if named.len() < NAMED && named.insert(name.clone()) {
                     send(Event::Stranger(format!("{name} publishes {topic} in this domain")));
                 }
@@ -311,23 +302,6 @@ fn without_estimate(found: &Microstructure) -> Option<String> {
         None => asked().all(|(_, status)| status == Status::Unknown),
     };
     nothing.then(|| why.to_owned())
-}
-
-/// Progress of the present phase, if the report is that of a simulator.
-fn phase_of(report: &Report) -> Option<PhaseReport> {
-    let share = value_under(PHASE_SHARE, report)?.parse().ok().filter(|s| (0.0..=1.0).contains(s));
-    let text = |key| value_under(key, report).map(str::to_owned);
-    Some(PhaseReport { name: text(PHASE)?, share, unmet: text(UNMET)? })
-}
-
-/// The step that a node reports under this key.
-fn step_under(key: &str, report: &Report) -> Option<u64> {
-    value_under(key, report)?.parse().ok()
-}
-
-/// The value that a node reports under this key.
-fn value_under<'a>(key: &str, report: &'a Report) -> Option<&'a str> {
-    report.health.values.iter().find(|(k, _)| k == key).map(|(_, value)| value.as_str())
 }
 
 #[cfg(test)]

@@ -1,15 +1,14 @@
 //! Processes of a launch file that has no simulator: started, shown line by line, and ended together.
 
-use crate::child::end_with_launcher;
+use crate::child::{command_of, end_with_launcher};
 use crate::plan::NodePlan;
-use grainlab_console::{Failure, print_more, program, say};
+use grainlab_console::{Failure, print_more, say};
 use grainlab_node_kit::Exit;
 use std::collections::BTreeMap;
 use std::io;
 use std::process::{ExitStatus, Stdio};
 use std::time::Duration;
 use tokio::io::{AsyncBufReadExt, AsyncRead, BufReader};
-use tokio::process::Command;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::task::JoinSet;
 use tokio::time::sleep;
@@ -30,22 +29,9 @@ impl Running {
     fn start(&mut self, index: usize) -> Result<(), Failure> {
         let plan = &self.plans[index];
         let failed = |e: io::Error| Failure::failed(format!("{}: cannot be started: {e}", plan.name));
-        let words = match plan.node {
-            Some(_) => program().map_err(failed)?,
-            None => vec![plan.program.clone().into()],
-        };
-        let mut command = Command::new(&words[0]);
+        let mut command = command_of(plan, self.domain).map_err(failed)?;
         end_with_launcher(&mut command);
-        command
-            .args(&words[1..])
-            .args(&plan.arguments)
-            .envs(plan.environment.iter().map(|(name, value)| (name, value)))
-            .env("ROS_DOMAIN_ID", self.domain.to_string())
-            .stdin(Stdio::null())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            // A group of its own: Ctrl-C reaches the launcher only, which hands it on once.
-            .process_group(0);
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut process = command.spawn().map_err(failed)?;
         self.pids.extend(process.id().and_then(|pid| Some((index, i32::try_from(pid).ok()?))));
         let name = plan.name.clone();

@@ -49,7 +49,6 @@ pub struct Origin {
 }
 
 impl Origin {
-    /// Data, and the node that inferred from them.
     pub(crate) fn data_and_node(&self) -> Option<String> {
         Some(format!("{} ({})", self.data()?, self.by.as_deref().unwrap_or("an unknown program")))
     }

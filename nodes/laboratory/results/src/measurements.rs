@@ -59,7 +59,6 @@ struct Sent {
 pub(crate) struct Measurements {
     /// In the order of arrival. A message that was sent again is one set.
     sent: Vec<Sent>,
-    /// Number of answers of each inversion.
     answers: BTreeMap<(Identity, Option<String>), usize>,
 }
 

@@ -33,7 +33,6 @@ const SHOWN: &str = "k z eps eps_stiffness fabric reference_axis g_total g_elast
     theta_bound_pa g_isotropic_pa poisson_isotropic symmetry symmetry_tolerance symmetry_axis residual_isotropic \
     residual_transversely_isotropic";
 
-/// Components in a row.
 const ROW: usize = 3;
 
 /// The block of one packing: what it is made of in a line, and its quantities by their keys.

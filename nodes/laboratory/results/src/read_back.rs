@@ -108,7 +108,6 @@ impl ReadBack {
 pub(crate) struct EngineRange {
     /// The program, with version and number of processes; `grainlab` for ours.
     pub(crate) engine: String,
-    /// Step of the first packing.
     pub(crate) from_step: u64,
 }
 

@@ -20,7 +20,6 @@ pub struct Summary {
     pub(crate) exchanges_per_second: Option<f64>,
     /// Fraction of the run's time that the simulator waited for answers.
     pub(crate) waiting_fraction: Option<f64>,
-    /// Steps per second while computing.
     pub(crate) particle_steps_per_second: Option<f64>,
     /// Engines of the packings, if another one than ours made any.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -95,12 +94,9 @@ impl TopicCount {
 impl Summary {
     /// Combines the data of the launcher with those of the recording.
     pub fn new(launched: Launched, back: ReadBack, tallies: Option<&[TopicTally]>) -> Self {
-        let has_counters = |r: &&Report| r.health.values.iter().any(|(key, _)| key == "particle_steps_per_s");
+        let has_counters = |r: &&Report| r.health.value("particle_steps_per_s").is_some();
         let simulator = back.reports.values().rfind(has_counters);
-        let number = |key: &str| {
-            let (_, value) = simulator?.health.values.iter().find(|(k, _)| k == key)?;
-            value.parse::<f64>().ok().filter(|v| v.is_finite())
-        };
+        let number = |key: &str| simulator?.health.value(key)?.parse::<f64>().ok().filter(|v| v.is_finite());
         let wall = number("wall_s").filter(|s| *s > 0.0);
         let per_wall = |key: &str| Some(number(key)? / wall?);
         let warnings: Vec<String> = launched.reasons.iter().cloned().chain(back.complaints).collect();

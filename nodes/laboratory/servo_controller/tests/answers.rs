@@ -74,8 +74,8 @@ fn the_same_question_has_the_same_answer_from_any_servo_in_any_order() {
     let mut asker = Asker::new(&hub);
     for sequence in [3, 1, 3] {
         let mut bus = hub.bus(Names::new("servo_controller").unwrap());
-        let mut servo = ServoController::new(&mut bus, 1).unwrap();
-        let mut actors = [Actor::new(&mut servo, bus)];
+        let servo = ServoController::new(&mut bus, 1).unwrap();
+        let mut actors = [Actor::new(Box::new(servo), bus)];
         for sequence in [sequence, 2, sequence] {
             asker.stress.publish(&mut asker.bus, &question(sequence)).unwrap();
         }

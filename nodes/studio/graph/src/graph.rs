@@ -30,7 +30,6 @@ impl Endpoint {
         Self { guid, name, type_name, writes, qos, type_hash, representations: vec![0] }
     }
 
-    /// This endpoint with the data representations that it announces.
     pub(crate) fn represented(self, announced: Option<Vec<i16>>) -> Self {
         let representations = announced.filter(|all| !all.is_empty()).unwrap_or_else(|| vec![0]);
         Self { representations, ..self }
@@ -53,7 +52,6 @@ impl Endpoint {
 
 #[derive(Clone, Debug)]
 pub(crate) struct NodeEntry {
-    /// Fully qualified name.
     pub(crate) name: String,
     pub(crate) participant: Guid,
     pub(crate) endpoints: BTreeSet<Guid>,

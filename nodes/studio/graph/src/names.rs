@@ -5,13 +5,10 @@ use grainlab_console::{Failure, escape_name};
 /// A topic of DDS as ROS knows it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum RosName {
-    /// A topic, `/stress`.
     Topic(String),
     /// The requests of a service, `/dem_simulator/get_parameters`.
     Request(String),
-    /// The replies of a service.
-    Reply(String),
-    /// No topic or service of ROS.
+    /// No topic or request of ROS.
     Other(String),
 }
 
@@ -21,11 +18,11 @@ impl RosName {
         let dds = escape_name(dds);
         let dds = dds.as_ref();
         let other = || Self::Other(dds.to_owned());
-        let service = |rest: &str, suffix: &str| rest.strip_suffix(suffix).map(|name| format!("/{name}"));
         match dds.split_once('/') {
             Some(("rt", rest)) => Self::Topic(format!("/{rest}")),
-            Some(("rq", rest)) => service(rest, "Request").map_or_else(other, Self::Request),
-            Some(("rr", rest)) => service(rest, "Reply").map_or_else(other, Self::Reply),
+            Some(("rq", rest)) => {
+                rest.strip_suffix("Request").map_or_else(other, |name| Self::Request(format!("/{name}")))
+            }
             _ => other(),
         }
     }
@@ -78,7 +75,6 @@ mod tests {
             RosName::of("rq/sim/get_parametersRequest"),
             RosName::Request("/sim/get_parameters".into())
         );
-        assert_eq!(RosName::of("rr/sim/get_parametersReply"), RosName::Reply("/sim/get_parameters".into()));
         assert_eq!(RosName::of("ros_discovery_info"), RosName::Other("ros_discovery_info".into()));
         assert_eq!(ros_type("grainlab_msgs::msg::dds_::Stress_"), "grainlab_msgs/msg/Stress");
         assert_eq!(

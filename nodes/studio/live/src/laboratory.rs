@@ -3,7 +3,7 @@
 use grainlab_console::Pace;
 use grainlab_core::Packing;
 use grainlab_core::results::PackingReport;
-use grainlab_msgs::{msg, simulated_seconds};
+use grainlab_msgs::{PhaseReport, msg, simulated_seconds};
 use grainlab_node_kit::{Exit, Report, RunId};
 use grainlab_report::{Timeline, view};
 use grainlab_results::{Inference, Measurement, Origin};
@@ -28,20 +28,9 @@ const ESTIMATES: usize = 64;
 pub(crate) enum End {
     /// The loading path is done.
     Complete,
-    /// It ended early, with the reason.
     Early(String),
     /// The simulator has left without a report of the end.
     Vanished,
-}
-
-/// Progress of the phase, as the simulator last reported.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct PhaseReport {
-    pub(crate) name: String,
-    /// Share that is done, 0 to 1, where the end is known beforehand.
-    pub(crate) share: Option<f64>,
-    /// The end conditions that do not hold.
-    pub(crate) unmet: String,
 }
 
 /// One run. Messages are taken as they arrive; times are those of the reader's clock.
@@ -168,17 +157,12 @@ impl Laboratory {
     /// Takes a report of the simulator.
     pub(crate) fn simulator(&mut self, report: &Report, now: Duration) {
         self.heard = now;
-        let value = |name: &str| report.health.values.iter().find(|(key, _)| key == name).map(|(_, v)| v);
-        self.grains = value("grains").and_then(|n| n.parse().ok()).or(self.grains);
-        if let Some(scene) = value("scene") {
-            self.scene.clone_from(scene);
+        let health = &report.health;
+        self.grains = health.value("grains").and_then(|n| n.parse().ok()).or(self.grains);
+        if let Some(scene) = health.value("scene") {
+            scene.clone_into(&mut self.scene);
         }
-        let text = |name: &str| value(name).cloned().unwrap_or_default();
-        let of_phase = PhaseReport {
-            name: text("phase"),
-            share: value("phase_share").and_then(|s| s.parse().ok()).filter(|s| (0.0..=1.0).contains(s)),
-            unmet: text("unmet"),
-        };
+        let of_phase = health.phase().unwrap_or_default();
         if of_phase.name != self.of_phase.name {
             self.pace = Pace::default();
         }

@@ -96,7 +96,6 @@ impl Laboratory {
         html!(include_str!("../assets/progress.html"), whole, width, phase, note)
     }
 
-    /// Why no packing is shown.
     pub(crate) fn no_packing(&self) -> String {
         let published = self.state.as_ref().map_or(0, |s| s.packings);
         match published {
@@ -141,10 +140,8 @@ fn row(peer: &Peer, now: Duration) -> [Cell; 7] {
         Liveliness::Left(exit) if exit.code() == 0 => ("gone", "has ended".to_owned()),
         Liveliness::Left(exit) => ("bad", format!("ended: {exit}")),
     };
-    let value = |key: &str| {
-        report.health.values.iter().find(|(name, _)| name == key).and_then(|(_, v)| v.parse::<u64>().ok())
-    };
-    let lost = report.published.iter().map(|p| p.full).sum::<u64>() + value("missing").unwrap_or(0);
+    let missing = report.health.value("missing").and_then(|v| v.parse::<u64>().ok());
+    let lost = report.published.iter().map(|p| p.full).sum::<u64>() + missing.unwrap_or(0);
     let (taken, refused) =
         report.received.iter().fold((0, 0), |(taken, refused), r| (taken + r.taken, refused + r.refused));
     let number = |n: u64| Cell::classed(n.to_string(), if n > 0 { "n bad" } else { "n" });

@@ -1,8 +1,9 @@
 //! One round: its processes.
 
 use clap::ValueEnum;
+use grainlab_buskit::pingpong;
 use grainlab_console::{Failure, print};
-use grainlab_node_kit::{Exit, FreeDomain, Network, NodeSpec, RosArgs, Scope, bus_in, pingpong, run_node};
+use grainlab_node_kit::{Exit, FreeDomain, Network, NodeSpec, RosArgs, Scope, bus_in, run_node};
 use grainlab_recorder::tallies::losses;
 use grainlab_recorder::{Recorder, ResultSlot, Settings, contract_topics};
 use grainlab_recordings::{Recording, WriterOptions};

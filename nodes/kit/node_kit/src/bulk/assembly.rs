@@ -27,7 +27,6 @@ impl Assembly {
         (self.next, self.held)
     }
 
-    /// Number of parts received.
     pub(super) fn parts(&self) -> u64 {
         u64::from(self.next) + u64::from(self.held.count_ones())
     }

@@ -22,7 +22,6 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    /// The shape of a body to send.
     pub(super) fn of(body: u64, bytes: &[u8]) -> Self {
         Self {
             body,

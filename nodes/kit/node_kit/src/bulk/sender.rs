@@ -12,7 +12,6 @@ use std::time::Duration;
 struct Reader {
     /// Sequence number of its latest credit.
     sequence: i64,
-    /// Time of its latest credit.
     latest_credit: Duration,
     /// Time at which it last received a missing part.
     progress: Duration,
@@ -40,7 +39,6 @@ pub(super) struct Sender {
     sent: u32,
     /// Time at which each part was last sent.
     when: Vec<Duration>,
-    /// Parts to send again.
     again: BTreeSet<u32>,
     readers: BTreeMap<Guid, Reader>,
     /// The process is about to end.

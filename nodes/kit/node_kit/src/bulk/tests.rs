@@ -4,6 +4,7 @@ use super::limits::{LONGEST, SILENCE, STRIDE, WINDOW};
 use super::part::{PartError, Shape, crc_of};
 use super::receiver::Receiver;
 use super::sender::Sender;
+use crate::memory::Dice;
 use grainlab_msgs::Guid;
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
 use std::time::Duration;
@@ -11,31 +12,10 @@ use std::time::Duration;
 const MS: Duration = Duration::from_millis(1);
 const SENDER: Guid = Guid([9; 16]);
 
-/// The SplitMix64 generator.
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn chance(&mut self, share: f64) -> bool {
-        (self.roll() >> 11) as f64 / (1_u64 << 53) as f64 <= share && share > 0.0
-    }
-}
-
 fn body(seed: u64, length: usize) -> Vec<u8> {
-    let mut dice = Dice(seed);
-    let mut bytes = vec![0, 1, 0, 0];
-    while bytes.len() < length {
-        bytes.extend(dice.roll().to_le_bytes());
-    }
-    bytes.truncate(length);
-    bytes
+    let mut dice = Dice::new(seed);
+    let random = std::iter::repeat_with(|| dice.below(256) as u8);
+    [0, 1, 0, 0].into_iter().chain(random).take(length).collect()
 }
 
 fn reader(name: u8) -> Guid {
@@ -53,7 +33,7 @@ struct Weather {
     twice: f64,
     corrupt: f64,
     /// Longest delay, ms.
-    delay: u64,
+    delay: usize,
 }
 
 struct End {
@@ -83,7 +63,7 @@ impl World {
     fn new(seed: u64, readers: u8, weather: Weather) -> Self {
         let mut world = Self {
             now: Duration::from_secs(1),
-            dice: Dice(seed),
+            dice: Dice::new(seed),
             weather,
             sender: Sender::new(SENDER),
             own: SENDER,
@@ -109,25 +89,25 @@ impl World {
     }
 
     fn send(&mut self, packet: impl Fn() -> Packet) {
-        let copies = if self.dice.chance(self.weather.twice) { 2 } else { 1 };
+        let copies = if self.dice.unit() < self.weather.twice { 2 } else { 1 };
         for _ in 0..copies {
-            if self.dice.chance(self.weather.lost) {
+            if self.dice.unit() < self.weather.lost {
                 continue;
             }
-            let delay = self.dice.roll() % (self.weather.delay + 1);
+            let delay = self.dice.below(self.weather.delay + 1);
             let mut packet = packet();
             if let Packet::Part { part, .. } = &mut packet
-                && self.dice.chance(self.weather.corrupt)
+                && self.dice.unit() < self.weather.corrupt
             {
-                let at = self.dice.roll();
-                match at % 8 {
-                    0 => part.index ^= 1 << (at >> 8 & 7),
-                    1 => part.count ^= 1 << (at >> 8 & 7),
-                    2 => part.body ^= 1 << (at >> 8 & 7),
-                    3 => part.length ^= 1 << (at >> 8 & 31),
+                let bit = 1 << self.dice.below(8);
+                match self.dice.below(8) {
+                    0 => part.index ^= bit,
+                    1 => part.count ^= bit,
+                    2 => part.body ^= u64::from(bit),
+                    3 => part.length ^= 1 << self.dice.below(32),
                     _ => {
-                        let place = (at >> 8) as usize % part.data.len();
-                        part.data[place] ^= 1 << (at >> 3 & 7);
+                        let at = self.dice.below(part.data.len());
+                        part.data[at] ^= bit as u8;
                     }
                 }
             }

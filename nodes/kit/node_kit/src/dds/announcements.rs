@@ -46,10 +46,6 @@ impl Announcements {
         }
     }
 
-    pub(super) fn forget(&mut self, reader: &Guid) {
-        self.0.remove(reader);
-    }
-
     /// What the writers of a reader announced. Only a latched reader is owed what was offered when it joined.
     pub(super) fn of(&self, reader: &Guid, latched: bool) -> Vec<Announced> {
         let writers = self.0.get(reader).into_iter().flat_map(BTreeMap::values);
@@ -57,7 +53,6 @@ impl Announcements {
     }
 }
 
-/// Enters a number that a writer offers.
 fn offer(known: &mut Announced, number: i64) {
     known.first = Some(known.first.map_or(number, |first| first.min(number)).max(1));
 }
@@ -88,8 +83,6 @@ mod tests {
         let expected = Announced { writer: WRITER, first: Some(5), last: 10, too_large: None };
         assert_eq!(announcements.of(&READER, true), [expected]);
         assert_eq!(announcements.of(&READER, false), [Announced { first: None, ..expected }]);
-        announcements.forget(&READER);
-        assert!(announcements.of(&READER, true).is_empty());
     }
 
     #[test]

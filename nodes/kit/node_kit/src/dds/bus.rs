@@ -4,7 +4,6 @@ use super::background_reader::{BackgroundReader, Inboxes};
 use super::direct::{self, DdsTopic, Discovery, RawPublisher, RawSubscription};
 use super::gate::Gate;
 use super::graph::{Follower, Graph};
-use super::handles::Handles;
 use super::inbox::Inbox;
 use super::network::{CROWDING_ADVICE, Network, crowding};
 use super::writer::Writer;
@@ -37,7 +36,7 @@ const STATUS: Token = Token(1);
 const WAKER: Token = Token(2);
 const FIRST_READER: usize = 3;
 
-/// One reader of this process, in the waiting thread.
+/// One subscription of this process, in the waiting thread.
 struct Reader {
     inbox: Arc<Mutex<Inbox>>,
     guid: Guid,
@@ -50,13 +49,10 @@ struct Reader {
     ready: bool,
     /// That notification is still to be cleared.
     notified: bool,
-}
-
-struct Subscriber {
-    reader: usize,
-    place: usize,
     taken: u64,
     refused: u64,
+    /// Writers that were said to be refused.
+    unfit: BTreeSet<Guid>,
 }
 
 /// The participant of one node.
@@ -69,9 +65,8 @@ pub struct DdsBus {
     declared: Parameters,
     sim_time: SimTime,
     background_reader: BackgroundReader,
-    writers: Handles<Writer>,
-    subscribers: Handles<Subscriber>,
-    readers: Handles<Reader>,
+    writers: Vec<Writer>,
+    readers: Vec<Reader>,
     inboxes: Inboxes,
     waker: Arc<Waker>,
     /// Another thread called, and no wait has returned it yet.
@@ -81,8 +76,6 @@ pub struct DdsBus {
     events: Events,
     topics: BTreeMap<String, DdsTopic>,
     follower: Arc<Mutex<Follower>>,
-    /// Writers that were said to be refused, by subscription.
-    refused: BTreeSet<(Guid, usize)>,
     gate: Arc<Gate>,
     node: Arc<Mutex<ros2_client::Node>>,
     /// Endpoints were made since the node was last announced to the ROS graph.
@@ -140,9 +133,8 @@ impl DdsBus {
             declared,
             sim_time: SimTime::default(),
             background_reader,
-            writers: Handles::default(),
-            subscribers: Handles::default(),
-            readers: Handles::default(),
+            writers: Vec::new(),
+            readers: Vec::new(),
             inboxes,
             waker,
             called: Arc::default(),
@@ -151,7 +143,6 @@ impl DdsBus {
             events: Events::with_capacity(64),
             topics: BTreeMap::new(),
             follower,
-            refused: BTreeSet::new(),
             gate,
             node: Arc::new(Mutex::new(node)),
             unannounced: true,
@@ -194,32 +185,6 @@ impl DdsBus {
         Ok(created)
     }
 
-    /// The reader for `demand` on a topic. It is created at the first call.
-    fn reader_for(&mut self, resolved: String, topic: &Topic, demand: Demand) -> Result<usize, BusError> {
-        let serves =
-            |r: &Reader| r.topic == resolved && r.info == topic.info && lock(&r.inbox).demand.covers(demand);
-        if let Some((index, _)) = self.readers.iter().find(|(_, r)| serves(r)) {
-            return Ok(index);
-        }
-        let dds_topic = self.dds_topic(&resolved, topic)?;
-        let reader = RawSubscription::new(&mut lock(&self.node), &dds_topic, topic, demand)?;
-        self.unannounced = true;
-        let mut inbox = Inbox::new(reader, resolved.clone(), demand, self.participant());
-        let index = self.readers.next();
-        self.poll
-            .registry()
-            .register(inbox.reader.source(), Token(FIRST_READER + index), Interest::READABLE)
-            .map_err(|e| create_error(&resolved, &e))?;
-        let guid = inbox.reader.guid();
-        self.gate.add_reader(guid, &resolved);
-        let inbox = Arc::new(Mutex::new(inbox));
-        lock(&self.inboxes).push(Arc::clone(&inbox));
-        let info = topic.info;
-        let latched = demand.reliable && topic.qos.transient_local;
-        let reader = Reader { inbox, guid, topic: resolved, info, latched, ready: false, notified: false };
-        Ok(self.readers.add(reader))
-    }
-
     /// Announces the endpoints made since the last call to the ROS graph, in one message.
     fn announce(&mut self) {
         if std::mem::take(&mut self.unannounced) {
@@ -230,7 +195,7 @@ impl DdsBus {
     }
 
     fn has_data(&self) -> bool {
-        self.readers.values().any(|r| r.ready || lock(&r.inbox).has_data())
+        self.readers.iter().any(|r| r.ready || lock(&r.inbox).has_data())
     }
 
     /// Polls once. Returns the most urgent event; the others are found at the next call.
@@ -289,31 +254,38 @@ impl Bus for DdsBus {
         let dds_topic = self.dds_topic(&resolved, topic)?;
         let raw = RawPublisher::new(&mut lock(&self.node), &dds_topic, topic)?;
         self.unannounced = true;
-        Ok(PublisherId(self.writers.add(Writer::new(raw, resolved, direct::window(topic)))))
+        self.writers.push(Writer::new(raw, resolved, direct::window(topic)));
+        Ok(PublisherId(self.writers.len() - 1))
     }
 
     fn subscribe(&mut self, topic: &Topic, demand: Demand) -> Result<SubscriptionId, BusError> {
-        let resolved = self.names.resolve(topic.name)?;
-        let reader = self.reader_for(resolved, topic, demand.within(topic))?;
-        let inbox = &self.readers.get(reader).ok_or(BusError::Handle("subscribe"))?.inbox;
-        let place = lock(inbox).add_queue();
-        Ok(SubscriptionId(self.subscribers.add(Subscriber { reader, place, taken: 0, refused: 0 })))
-    }
-
-    fn unsubscribe(&mut self, subscription: SubscriptionId) {
-        let Some(ended) = self.subscribers.remove(subscription.0) else { return };
-        let Some(reader) = self.readers.get(ended.reader) else { return };
-        if self.subscribers.values().any(|s| s.reader == ended.reader) {
-            lock(&reader.inbox).close_queue(ended.place);
-            return;
-        }
-        let Some(reader) = self.readers.remove(ended.reader) else { return };
-        if let Err(error) = self.poll.registry().deregister(lock(&reader.inbox).reader.source()) {
-            log::error!("{}: cannot end the subscription in order: {error}", reader.topic);
-        }
-        lock(&self.inboxes).retain(|inbox| !Arc::ptr_eq(inbox, &reader.inbox));
-        self.gate.remove_reader(reader.guid);
+        let (resolved, demand) = (self.names.resolve(topic.name)?, demand.within(topic));
+        let dds_topic = self.dds_topic(&resolved, topic)?;
+        let reader = RawSubscription::new(&mut lock(&self.node), &dds_topic, topic, demand)?;
         self.unannounced = true;
+        let mut inbox = Inbox::new(reader, resolved.clone(), demand, self.participant());
+        let index = self.readers.len();
+        self.poll
+            .registry()
+            .register(inbox.reader.source(), Token(FIRST_READER + index), Interest::READABLE)
+            .map_err(|e| create_error(&resolved, &e))?;
+        let guid = inbox.reader.guid();
+        self.gate.add_reader(guid, &resolved);
+        let inbox = Arc::new(Mutex::new(inbox));
+        lock(&self.inboxes).push(Arc::clone(&inbox));
+        self.readers.push(Reader {
+            inbox,
+            guid,
+            topic: resolved,
+            info: topic.info,
+            latched: demand.reliable && topic.qos.transient_local,
+            ready: false,
+            notified: false,
+            taken: 0,
+            refused: 0,
+            unfit: BTreeSet::new(),
+        });
+        Ok(SubscriptionId(index))
     }
 
     fn publish_about(
@@ -324,7 +296,7 @@ impl Bus for DdsBus {
     ) -> Result<i64, BusError> {
         let writer = self.writers.get_mut(publisher.0).ok_or(BusError::Handle("publish"))?;
         let sequence = writer.write(body, about)?;
-        for reader in self.readers.values().filter(|r| r.topic == writer.topic) {
+        for reader in self.readers.iter().filter(|r| r.topic == writer.topic) {
             lock(&reader.inbox).deliver_own(SampleId { writer: writer.id, sequence }, about, body);
         }
         Ok(sequence)
@@ -388,9 +360,10 @@ impl Bus for DdsBus {
     }
 
     fn writers(&self, subscription: SubscriptionId) -> usize {
-        let reader = self.subscribers.get(subscription.0).and_then(|s| self.readers.get(s.reader));
         let graph = &lock(&self.follower).graph;
-        reader.map_or(0, |r| graph.matches_of(r.guid, |guid| self.counts(graph, guid, &r.info)))
+        self.readers
+            .get(subscription.0)
+            .map_or(0, |r| graph.matches_of(r.guid, |guid| self.counts(graph, guid, &r.info)))
     }
 
     fn foreign_writers(&self, topic: &Topic) -> Vec<Guid> {
@@ -400,10 +373,6 @@ impl Bus for DdsBus {
     fn misfits(&self, topic: &Topic) -> Vec<Participant> {
         let misfits = |graph: &Graph, guid: &Guid| graph.misfit(guid, &topic.info).is_some();
         self.writers_of(topic, misfits).iter().map(Guid::participant).collect()
-    }
-
-    fn strange_writers(&self, topic: &Topic) -> Vec<Guid> {
-        self.writers_of(topic, |_, guid| !self.gate.admits(guid))
     }
 
     fn offers(&self) -> Vec<Offer> {
@@ -422,16 +391,15 @@ impl Bus for DdsBus {
     }
 
     fn published(&self) -> Vec<Published> {
-        self.writers.values().flat_map(|w| w.published()).collect()
+        self.writers.iter().flat_map(Writer::published).collect()
     }
 
     fn received(&self) -> Vec<Received> {
-        let of = |s: &Subscriber| {
-            let reader = self.readers.get(s.reader)?;
-            let refused = s.refused + lock(&reader.inbox).refused;
-            Some(Received { topic: reader.topic.clone(), taken: s.taken, refused })
+        let of = |r: &Reader| {
+            let refused = r.refused + lock(&r.inbox).refused;
+            Received { topic: r.topic.clone(), taken: r.taken, refused }
         };
-        self.subscribers.values().filter_map(of).collect()
+        self.readers.iter().map(of).collect()
     }
 
     fn announced(&self, subscription: SubscriptionId) -> Vec<Announced> {
@@ -439,8 +407,8 @@ impl Bus for DdsBus {
     }
 
     fn count_refused(&mut self, subscription: SubscriptionId) {
-        if let Some(subscriber) = self.subscribers.get_mut(subscription.0) {
-            subscriber.refused += 1;
+        if let Some(reader) = self.readers.get_mut(subscription.0) {
+            reader.refused += 1;
         }
     }
 
@@ -472,8 +440,8 @@ impl Bus for DdsBus {
         let deadline = Instant::now() + timeout;
         // DDS may match a reader of our own, too, which acknowledges only if multicast reaches it.
         let own = |r: &Reader, topic: &str| r.topic == topic && lock(&r.inbox).demand.reliable;
-        let external = |w: &&Writer| !self.readers.values().any(|r| own(r, &w.topic));
-        self.writers.values().filter(external).all(|writer| {
+        let external = |w: &&Writer| !self.readers.iter().any(|r| own(r, &w.topic));
+        self.writers.iter().filter(external).all(|writer| {
             let left = deadline.saturating_duration_since(Instant::now());
             writer.raw.wait_for_acknowledgments(left)
         })

@@ -215,7 +215,6 @@ pub(super) fn window(topic: &Topic) -> u32 {
     window.max(topic.qos.depth)
 }
 
-/// The policies that a writer of `topic` offers.
 fn offered(topic: &Topic) -> QosPolicies {
     let qos = topic.qos;
     let offered = policies(qos.reliable, qos.transient_local, qos.depth, window(topic));
@@ -412,19 +411,23 @@ fn nanos(time: Timestamp) -> u64 {
 
 // ---- Graph
 
-/// A change that discovery reports.
 pub(super) enum Change {
     /// A writer of another process, with its DDS topic and what it offers there if that is a topic of ROS.
-    Writer { writer: Guid, topic: String, offer: Option<Offer> },
+    Writer {
+        writer: Guid,
+        topic: String,
+        offer: Option<Offer>,
+    },
     /// An endpoint of this process was matched.
-    Matched { local: Guid, remote: Guid },
-    /// An endpoint is gone.
+    Matched {
+        local: Guid,
+        remote: Guid,
+    },
     Lost(Guid),
     /// A participant is gone: its GUID prefix.
     ParticipantLost([u8; 12]),
     /// Two endpoints do not fit, in words.
     Misfit(String),
-    /// Any other change.
     Other,
 }
 

@@ -1,11 +1,11 @@
 //! Applies the rules of admission in RustDDS's threads.
 
 use super::announcements::Announcements;
-use super::processes;
 use crate::admission::{Admission, Participant, Process, Stranger};
 use crate::announced::Announced;
 use crate::identity::{Identity, Scope};
 use crate::lock::lock;
+use crate::processes;
 use grainlab_msgs::Guid;
 use rustdds::ReceptionEvent;
 use std::collections::BTreeMap;
@@ -38,11 +38,6 @@ impl Gate {
 
     pub(super) fn add_reader(&self, reader: Guid, topic: &str) {
         lock(&self.topics).insert(reader, topic.to_owned());
-    }
-
-    pub(super) fn remove_reader(&self, reader: Guid) {
-        lock(&self.topics).remove(&reader);
-        lock(&self.announcements).forget(&reader);
     }
 
     /// Keeps what one of our readers learnt of an admitted writer of another process. Warns of messages that are too large.

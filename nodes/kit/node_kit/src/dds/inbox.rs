@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 /// Most bytes of the samples that are queued beyond the depth of a reader that takes bursts.
 const BURST_BYTES: usize = 64 << 20;
 
-/// Samples of one subscriber, the oldest first.
+/// Samples that were read, the oldest first.
 #[derive(Default)]
 struct Queue {
     samples: VecDeque<Sample>,
@@ -38,13 +38,11 @@ fn size_of(sample: &Sample) -> usize {
     std::mem::size_of::<Sample>() + sample.body.capacity()
 }
 
-/// A reader shared by all subscriptions to its topic, with one queue per subscription.
 pub(super) struct Inbox {
     pub(super) reader: RawSubscription,
     topic: String,
     pub(super) demand: Demand,
-    /// One for each subscriber; that of one that left is `None`.
-    queues: Vec<Option<Queue>>,
+    queue: Queue,
     /// Our own participant: the bus delivers its samples, and the copies from DDS are dropped.
     own: [u8; 12],
     /// Number of samples that RustDDS could not return: their representation is not CDR.
@@ -53,7 +51,7 @@ pub(super) struct Inbox {
 
 impl Inbox {
     pub(super) fn new(reader: RawSubscription, topic: String, demand: Demand, own: [u8; 12]) -> Self {
-        Self { reader, topic, demand, queues: Vec::new(), own, refused: 0 }
+        Self { reader, topic, demand, queue: Queue::default(), own, refused: 0 }
     }
 
     /// Adds a sample that this process published: a participant without multicast does not discover itself, and DDS would
@@ -64,54 +62,27 @@ impl Inbox {
         let SampleId { writer, sequence } = id;
         let now = wall_nanos();
         let info = SampleInfo { writer, sequence, source_time: Some(now), received: now, about };
-        let sample = Sample { body: body.to_vec(), info };
-        for queue in self.queues.iter_mut().flatten() {
-            queue.push(sample.clone(), self.demand);
-        }
-    }
-
-    /// Adds a subscriber and returns its index.
-    pub(super) fn add_queue(&mut self) -> usize {
-        self.queues.push(Some(Queue::default()));
-        self.queues.len() - 1
-    }
-
-    pub(super) fn close_queue(&mut self, place: usize) {
-        self.queues[place] = None;
+        self.queue.push(Sample { body: body.to_vec(), info }, self.demand);
     }
 
     pub(super) fn has_data(&self) -> bool {
-        self.queues.iter().flatten().any(|queue| !queue.samples.is_empty())
+        !self.queue.samples.is_empty()
     }
 
-    /// The next sample for one subscriber.
-    pub(super) fn take(&mut self, place: usize) -> Result<Option<Sample>, BusError> {
-        if let Some(sample) = self.queues[place].as_mut().and_then(Queue::pop) {
-            return Ok(Some(sample));
+    pub(super) fn take(&mut self) -> Result<Option<Sample>, BusError> {
+        match self.queue.pop() {
+            Some(sample) => Ok(Some(sample)),
+            None => self.read(),
         }
-        // With one subscriber a sample is returned directly; with more, it is also queued for the others.
-        let Some(sample) = self.read()? else { return Ok(None) };
-        for (other, queue) in self.queues.iter_mut().enumerate() {
-            if let Some(queue) = queue.as_mut().filter(|_| other != place) {
-                queue.push(sample.clone(), self.demand);
-            }
-        }
-        Ok(Some(sample))
     }
 
-    /// Moves all samples that arrived into the queues; true if there were any.
+    /// Moves all samples that arrived into the queue; true if there were any.
     pub(super) fn collect(&mut self) -> Result<bool, BusError> {
         self.reader.acknowledge();
         let mut moved = false;
         while let Some(sample) = self.read()? {
             moved = true;
-            let mut queues: Vec<&mut Queue> = self.queues.iter_mut().flatten().collect();
-            if let Some((last, others)) = queues.split_last_mut() {
-                for queue in others {
-                    queue.push(sample.clone(), self.demand);
-                }
-                last.push(sample, self.demand);
-            }
+            self.queue.push(sample, self.demand);
         }
         Ok(moved)
     }

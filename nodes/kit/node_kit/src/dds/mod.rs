@@ -2,10 +2,10 @@
 //!
 //! - `bus`: the [`crate::Bus`] itself, with its single wait
 //! - `inbox`: a reader with the samples that were read but not taken; `background_reader`: reads while a node computes
-//! - `gate`: which samples are accepted; `processes`: the process of a participant
+//! - `gate`: which samples are accepted
 //! - `graph`: endpoints of other processes
 //! - `network`: domain and reach; `static_peers`: hosts that are found without multicast
-//! - `handles`: values by handles; `writer`: one writer; `direct`: what ros2-client lacks, from RustDDS
+//! - `writer`: one writer; `direct`: what ros2-client lacks, from RustDDS
 
 mod announcements;
 mod background_reader;
@@ -13,10 +13,8 @@ mod bus;
 mod direct;
 mod gate;
 mod graph;
-mod handles;
 mod inbox;
 mod network;
-mod processes;
 mod static_peers;
 mod writer;
 

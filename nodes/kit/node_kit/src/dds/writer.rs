@@ -6,7 +6,6 @@ use crate::sample::SampleId;
 use grainlab_msgs::{Guid, Published};
 use std::collections::BTreeMap;
 
-/// A writer and its statistics.
 pub(super) struct Writer {
     pub(super) raw: RawPublisher,
     pub(super) id: Guid,

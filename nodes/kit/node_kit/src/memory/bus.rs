@@ -57,16 +57,6 @@ impl MemoryBus {
         self.readers.iter().any(|r| state.readers[*r].has_data(now))
     }
 
-    /// Present writers of a topic, sorted, of those that count.
-    fn writers_of(&self, topic: &Topic, counts: impl Fn(Guid) -> bool) -> Vec<Guid> {
-        let topic = self.names.resolve(topic.name).unwrap_or_default();
-        let state = self.state.borrow();
-        let on_topic = state.writers.iter().filter(|w| w.alive && w.topic == topic);
-        let mut ids: Vec<Guid> = on_topic.map(|w| w.id).filter(|id| counts(*id)).collect();
-        ids.sort();
-        ids
-    }
-
     /// True for an admitted writer of another process.
     fn counts(&self, writer: Guid) -> bool {
         let participant = writer.participant();
@@ -91,12 +81,6 @@ impl Bus for MemoryBus {
         let mut state = self.state.borrow_mut();
         self.readers.push(state.add_reader(self.participant, resolved, demand));
         Ok(SubscriptionId(self.readers.len() - 1))
-    }
-
-    fn unsubscribe(&mut self, subscription: SubscriptionId) {
-        if let Some(reader) = self.readers.get(subscription.0) {
-            self.state.borrow_mut().readers[*reader].close();
-        }
     }
 
     fn publish_about(
@@ -185,11 +169,12 @@ impl Bus for MemoryBus {
     }
 
     fn foreign_writers(&self, topic: &Topic) -> Vec<Guid> {
-        self.writers_of(topic, |id| self.counts(id))
-    }
-
-    fn strange_writers(&self, topic: &Topic) -> Vec<Guid> {
-        self.writers_of(topic, |id| !self.admission.admits(&id.participant()))
+        let topic = self.names.resolve(topic.name).unwrap_or_default();
+        let state = self.state.borrow();
+        let on_topic = state.writers.iter().filter(|w| w.alive && w.topic == topic);
+        let mut ids: Vec<Guid> = on_topic.map(|w| w.id).filter(|id| self.counts(*id)).collect();
+        ids.sort();
+        ids
     }
 
     fn offers(&self) -> Vec<Offer> {

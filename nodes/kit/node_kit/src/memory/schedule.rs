@@ -7,8 +7,9 @@ use grainlab_msgs::Exit;
 use std::time::Duration;
 
 /// One node on its bus.
-pub struct Actor<'a> {
-    node: &'a mut dyn Node,
+pub struct Actor {
+    /// The node.
+    pub node: Box<dyn Node>,
     /// Bus of the node.
     pub bus: MemoryBus,
     /// Latest time of its next step.
@@ -17,17 +18,36 @@ pub struct Actor<'a> {
     pub ended: Option<Result<Exit, NodeError>>,
 }
 
-impl<'a> Actor<'a> {
+impl Actor {
     /// A node that was made on `bus`.
-    pub fn new(node: &'a mut dyn Node, bus: MemoryBus) -> Self {
+    pub fn new(node: Box<dyn Node>, bus: MemoryBus) -> Self {
         Self { node, bus, due: Duration::ZERO, ended: None }
+    }
+
+    /// Returns the time of the next step, which is past or `now` if a sample has arrived or the waiting time is over; `None` if the
+    /// node has ended.
+    pub fn next_step(&self, now: Duration) -> Option<Duration> {
+        let due = if self.bus.has_data() { now } else { self.due };
+        self.ended.is_none().then_some(due)
+    }
+
+    /// Steps the node if its next step is due; true if it was stepped.
+    pub fn step(&mut self, now: Duration) -> bool {
+        let is_due = self.next_step(now).is_some_and(|due| due <= now);
+        if is_due {
+            match self.node.step(&mut self.bus) {
+                Ok(Next::Again) => self.due = now,
+                Ok(Next::Wait(time)) => self.due = now.saturating_add(time),
+                Ok(Next::Finished(exit)) => self.ended = Some(Ok(exit)),
+                Err(error) => self.ended = Some(Err(error)),
+            }
+        }
+        is_due
     }
 }
 
-/// Steps all actors in turn until `done`, until all ended, or until virtual time `limit`; true in the first case.
-///
-/// An actor is stepped when a sample arrived for it or its waiting time is over. Time advances only when no actor can
-/// step.
+/// Steps all actors in turn until `done`, until all ended, or until virtual time `limit`; true in the first case. Time advances only
+/// when no actor can step.
 pub fn run_until(
     hub: &Hub,
     actors: &mut [Actor],
@@ -36,26 +56,15 @@ pub fn run_until(
 ) -> bool {
     loop {
         let now = hub.now();
-        let mut stepped = false;
-        for actor in actors.iter_mut() {
-            if actor.ended.is_some() || (actor.due > now && !actor.bus.has_data()) {
-                continue;
-            }
-            stepped = true;
-            match actor.node.step(&mut actor.bus) {
-                Ok(Next::Again) => actor.due = now,
-                Ok(Next::Wait(time)) => actor.due = now + time,
-                Ok(Next::Finished(exit)) => actor.ended = Some(Ok(exit)),
-                Err(error) => actor.ended = Some(Err(error)),
-            }
-        }
+        // Every node is stepped, also after the first that was.
+        let stepped = actors.iter_mut().fold(false, |any, actor| actor.step(now) | any);
         if done(actors) {
             return true;
         }
         if stepped {
             continue;
         }
-        let waiting = actors.iter().filter(|a| a.ended.is_none()).map(|a| a.due).min();
+        let waiting = actors.iter().filter_map(|actor| actor.next_step(now)).min();
         let next = waiting.into_iter().chain(hub.next_arrival()).min();
         match next {
             Some(next) if waiting.is_some() && next <= limit => hub.advance(next.saturating_sub(now)),

@@ -139,12 +139,6 @@ impl Reader {
         }
     }
 
-    /// Receives nothing any longer.
-    pub(super) fn close(&mut self) {
-        self.alive = false;
-        self.queue.clear();
-    }
-
     pub(super) fn has_data(&self, now: Duration) -> bool {
         self.queue.front().is_some_and(|(due, _)| *due <= now)
     }

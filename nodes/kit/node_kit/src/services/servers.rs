@@ -27,7 +27,6 @@ const DEPTH: usize = 16;
 const NAMES: usize = 1000;
 const NAME: usize = 255;
 
-/// The type of `~/get_type_description`.
 const TYPE_DESCRIPTION: (&str, &str) = ("type_description_interfaces", "GetTypeDescription");
 
 /// The servers, and what they answer from.
@@ -44,7 +43,6 @@ pub(super) struct NodeServers {
     log: SparseLog,
 }
 
-/// One server in the namespace of its node.
 fn server<Req: Message + Clone + 'static, Resp: Message + 'static>(
     node: &mut Node,
     name: &str,

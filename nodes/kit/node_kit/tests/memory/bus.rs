@@ -4,9 +4,11 @@ use crate::{MS, bus_of};
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::topics;
 use grainlab_node_kit::{
-    Actor, Bus, Demand, Exit, Faults, Health, Hub, MemoryBus, Next, Node, NodeError, Publisher, Subscription,
-    Wake, run_until,
+    Actor, Bus, Demand, Exit, Faults, Hub, MemoryBus, Next, Node, NodeError, Publisher, Subscription, Wake,
+    Worker, run_until,
 };
+use std::cell::RefCell;
+use std::rc::Rc;
 use std::time::Duration;
 
 fn rate(sequence: u64) -> StrainRate {
@@ -120,14 +122,14 @@ struct Asker {
     subscription: Subscription<StrainRate>,
     sequence: u64,
     last: u64,
-    answers: Vec<u64>,
+    answers: Rc<RefCell<Vec<u64>>>,
 }
 
 impl Node for Asker {
     fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
         while let Some((rate, _)) = self.subscription.take_valid(bus)? {
             if rate.sequence == self.sequence {
-                self.answers.push(rate.sequence);
+                self.answers.borrow_mut().push(rate.sequence);
                 self.sequence += 1;
             }
         }
@@ -136,10 +138,6 @@ impl Node for Asker {
         }
         self.publisher.publish(bus, &Stress { sequence: self.sequence, ..Stress::default() })?;
         Ok(Next::Wait(20 * MS))
-    }
-
-    fn health(&self) -> Health {
-        Health::ok("asking")
     }
 }
 
@@ -156,10 +154,6 @@ impl Node for Answerer {
         }
         Ok(Next::Wait(Duration::from_secs(1)))
     }
-
-    fn health(&self) -> Health {
-        Health::ok("answering")
-    }
 }
 
 #[test]
@@ -170,27 +164,43 @@ fn a_lockstep_that_repeats_survives_any_loss_and_the_scheduler_is_deterministic(
             hub.set_faults(topic, Faults { drop: 0.4, duplicate: 0.2, delay: 5 * MS });
         }
         let (mut a, mut b) = (bus_of(&hub, "sim"), bus_of(&hub, "servo"));
-        let mut asker = Asker {
+        let answers = Rc::default();
+        let asker = Asker {
             publisher: Publisher::advertise(&mut a, &topics::STRESS).unwrap(),
             subscription: Subscription::subscribe(&mut a, &topics::STRAIN_RATE, Demand::best_effort(64))
                 .unwrap(),
             sequence: 1,
             last: 100,
-            answers: Vec::new(),
+            answers: Rc::clone(&answers),
         };
-        let mut answerer = Answerer {
+        let answerer = Answerer {
             publisher: Publisher::advertise(&mut b, &topics::STRAIN_RATE).unwrap(),
             subscription: Subscription::subscribe(&mut b, &topics::STRESS, Demand::best_effort(64)).unwrap(),
         };
-        let mut actors = [Actor::new(&mut asker, a), Actor::new(&mut answerer, b)];
+        let mut actors = [Actor::new(Box::new(asker), a), Actor::new(Box::new(answerer), b)];
         let done = run_until(&hub, &mut actors, Duration::from_secs(60), |actors| actors[0].ended.is_some());
         let asked = actors[0].bus.published()[0].count;
         assert!(done && matches!(actors[0].ended.as_ref(), Some(Ok(Exit::Done))));
-        drop(actors);
-        (asker.answers, asked, hub.now())
+        (answers.take(), asked, hub.now())
     };
     let (answers, asked, took) = run(11);
     assert_eq!(answers, (1..=100).collect::<Vec<u64>>());
     assert!(asked > 100, "losses were repeated");
     assert_eq!(run(11), (answers, asked, took));
+}
+
+#[test]
+fn on_the_bus_in_memory_a_job_is_done_as_soon_as_it_is_given() {
+    let mut total = 0;
+    let mut worker = Worker::new(&bus_of(&Hub::new(1), "worker"), "sum", move |job: u64| {
+        total += job;
+        total
+    })
+    .unwrap();
+    for (job, sum) in [(2, 2), (5, 7)] {
+        assert!(!worker.is_busy() && worker.result().is_none());
+        worker.give(job);
+        assert!(worker.is_busy());
+        assert_eq!(worker.result(), Some(sum));
+    }
 }

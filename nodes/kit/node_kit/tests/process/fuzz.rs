@@ -6,7 +6,7 @@
 use super::flood::{flood, learn, overheard, ports};
 use super::rtps::{Datagram, ports_in_use, send, sniffer};
 use super::{Role, TIME_LIMIT, claim};
-use grainlab_node_kit::pingpong::bus_ping;
+use grainlab_buskit::pingpong::bus_ping;
 use grainlab_node_kit::{DdsBus, Names, Network};
 use std::net::{Ipv4Addr, UdpSocket};
 use std::time::{Duration, Instant};

@@ -1,7 +1,7 @@
 //! A process that was stopped and continued (Ctrl-Z and fg, a debugger, job control) continues where it was.
 
 use super::{Role, claim};
-use grainlab_node_kit::pingpong::bus_ping;
+use grainlab_buskit::pingpong::bus_ping;
 use grainlab_node_kit::{DdsBus, Names};
 use std::time::Duration;
 

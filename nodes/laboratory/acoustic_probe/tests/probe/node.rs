@@ -48,7 +48,7 @@ fn probe(bus: &mut MemoryBus) -> AcousticProbe {
 }
 
 fn value(node: &AcousticProbe, key: &str) -> String {
-    node.health().values.into_iter().find(|(name, _)| name == key).unwrap().1
+    node.health().value(key).unwrap().to_owned()
 }
 
 #[test]

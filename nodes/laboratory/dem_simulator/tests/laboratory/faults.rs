@@ -1,13 +1,11 @@
 //! Invalid messages, and runs that cannot continue.
 
-use grainlab_buskit::{Bench, FOREVER, Kind, Record, exit_of};
+use grainlab_buskit::{Bench, Kind, Record, exit_of};
 use grainlab_core::{ComponentControl, Packing};
 use grainlab_dem_simulator::Settings;
 use grainlab_msgs::msg::{self, PackingReport, RunState, StrainRate, Stress};
 use grainlab_msgs::{to_cdr, topics};
-use grainlab_node_kit::{
-    Actor, Bus, Demand, Exit, Next, Node, NodeError, Publisher, Subscription, run_until,
-};
+use grainlab_node_kit::{Actor, Bus, Demand, Exit, Next, Node, NodeError, Publisher, Subscription};
 use std::time::Duration;
 
 /// A servo that answers `honest` requests correctly and then invalidly.
@@ -55,25 +53,22 @@ fn run_with(honest: u64, lies: u32, lie: f64) -> (Option<Exit>, Record) {
 /// A run with or without speculative steps, with the number of answers predicted and the total.
 fn run_ahead_with(honest: u64, lies: u32, lie: f64, ahead: bool) -> (Option<Exit>, Record, [u64; 2]) {
     let bench = Bench::new(0);
-    let (mut recorder, recorder_bus) = bench.node(Kind::Recorder);
-    let (mut simulator, simulator_bus) = bench.simulator(&Settings { ahead, ..Settings::default() }, None);
     let mut servo_bus = bench.bus("servo_controller");
-    let mut servo = BadServo::new(&mut servo_bus, honest, lies, lie);
+    let servo = BadServo::new(&mut servo_bus, honest, lies, lie);
     let mut actors = vec![
-        Actor::new(&mut *recorder, recorder_bus),
-        Actor::new(&mut simulator, simulator_bus),
-        Actor::new(&mut servo, servo_bus),
+        bench.node(Kind::Recorder),
+        bench.simulator(&Settings { ahead, ..Settings::default() }, None),
+        Actor::new(Box::new(servo), servo_bus),
     ];
-    run_until(&bench.hub, &mut actors, FOREVER, |actors| {
+    bench.run(&mut actors, |actors| {
         let end = bench.record.borrow().last::<RunState>(&topics::RUN_STATE);
         actors[1].ended.is_some() || end.is_some_and(|s| s.state == RunState::FINISHED)
     });
     // The last messages of the simulator are still in transit.
-    run_until(&bench.hub, &mut actors[..1], bench.hub.now(), |_| false);
+    bench.pass(&mut actors[..1], Duration::ZERO);
     let exit = exit_of(&actors[1]);
-    drop(actors);
-    let health = simulator.health();
-    let count = |name| health.values.iter().find(|(n, _)| n == name).map_or(0, |(_, v)| v.parse().unwrap());
+    let health = actors[1].node.health();
+    let count = |name| health.value(name).map_or(0, |v| v.parse().unwrap());
     (exit, bench.record.take(), ["foreseen", "exchanges"].map(count))
 }
 
@@ -154,16 +149,14 @@ fn a_packing_with_an_index_out_of_range_is_refused_and_the_analyzer_continues() 
     let bench = Bench::new(0);
     let mut source = bench.bus("source");
     let packings: Publisher<msg::Packing> = Publisher::advertise(&mut source, &topics::PACKING).unwrap();
-    let (mut recorder, recorder_bus) = bench.node(Kind::Recorder);
-    let (mut analyzer, analyzer_bus) = bench.node(Kind::Analyzer);
-    let mut actors = [Actor::new(&mut *recorder, recorder_bus), Actor::new(&mut *analyzer, analyzer_bus)];
+    let mut actors = [bench.node(Kind::Recorder), bench.node(Kind::Analyzer)];
     packings.publish(&mut source, &broken).unwrap();
     source.publish(packings.id(), &to_cdr(&good)[..1000]).unwrap();
-    run_until(&bench.hub, &mut actors, Duration::from_secs(1), |_| false);
+    bench.pass(&mut actors, Duration::from_secs(1));
     assert!(bench.record.borrow().bodies(&topics::PACKING_REPORT).is_empty());
     assert_eq!(actors[1].bus.received().iter().map(|r| r.refused).sum::<u64>(), 2);
     packings.publish(&mut source, &good).unwrap();
-    run_until(&bench.hub, &mut actors, Duration::from_secs(2), |_| false);
+    bench.pass(&mut actors, Duration::from_secs(1));
     let report: PackingReport = bench.record.borrow().last(&topics::PACKING_REPORT).unwrap();
     assert_eq!(report.source_step, good.step);
     let last = |record: &Record| record.bodies(&topics::PACKING_REPORT).last().cloned();

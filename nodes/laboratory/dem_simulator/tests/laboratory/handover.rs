@@ -1,12 +1,12 @@
 //! Nodes that join, leave, and return in the middle of a run.
 
-use grainlab_buskit::{Bench, FOREVER, Kind, Record, exit_of, tiny};
+use grainlab_buskit::{Bench, Kind, Record, exit_of, tiny};
 use grainlab_core::Packing;
 use grainlab_dem_simulator::{DemSimulator, Settings};
 use grainlab_msgs::boundary::BoundaryError;
 use grainlab_msgs::msg::{self, RunState};
 use grainlab_msgs::topics;
-use grainlab_node_kit::{Actor, Bus, Exit, Faults, Health, Next, Node, NodeError, run_until};
+use grainlab_node_kit::{Actor, Bus, Exit, Faults, Next, Node, NodeError};
 use std::time::Duration;
 
 fn state_in(message: &msg::Packing) -> Result<(Packing, Vec<u8>), BoundaryError> {
@@ -21,26 +21,19 @@ fn requests(record: &Record) -> usize {
 fn a_fresh_servo_in_the_middle_of_a_run_changes_no_byte() {
     let clean = Bench::new(0).whole_run(&Settings::default(), None).without_repeats();
     let bench = Bench::new(0);
-    let (mut recorder, recorder_bus) = bench.node(Kind::Recorder);
-    let (mut analyzer, analyzer_bus) = bench.node(Kind::Analyzer);
-    let (mut inversion, inversion_bus) = bench.node(Kind::Inversion);
-    let (mut simulator, simulator_bus) = bench.simulator(&Settings::default(), None);
-    let (mut first, first_bus) = bench.node(Kind::Servo);
     let mut actors = vec![
-        Actor::new(&mut *recorder, recorder_bus),
-        Actor::new(&mut *analyzer, analyzer_bus),
-        Actor::new(&mut *inversion, inversion_bus),
-        Actor::new(&mut simulator, simulator_bus),
-        Actor::new(&mut *first, first_bus),
+        bench.node(Kind::Recorder),
+        bench.node(Kind::Analyzer),
+        bench.node(Kind::Inversion),
+        bench.simulator(&Settings::default(), None),
+        bench.node(Kind::Servo),
     ];
-    assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| requests(&bench.record.borrow()) > 300));
+    assert!(bench.run(&mut actors, |_| requests(&bench.record.borrow()) > 300));
     actors.pop();
-    let killed = bench.hub.now();
-    run_until(&bench.hub, &mut actors, killed + Duration::from_secs(3), |_| false);
+    bench.pass(&mut actors, Duration::from_secs(3));
     assert!(!bench.record.borrow().complete(), "the simulator waits");
-    let (mut second, second_bus) = bench.node(Kind::Servo);
-    actors.push(Actor::new(&mut *second, second_bus));
-    assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| bench.record.borrow().complete()));
+    actors.push(bench.node(Kind::Servo));
+    assert!(bench.run(&mut actors, |_| bench.record.borrow().complete()));
     assert_eq!(bench.record.borrow().without_repeats().difference(&clean), None);
 }
 
@@ -61,7 +54,7 @@ fn a_run_resumed_from_any_packing_continues_bit_for_bit() {
 
 /// A simulator that is stopped before its n-th step.
 struct Stopped {
-    simulator: DemSimulator,
+    simulator: Box<dyn Node>,
     steps_left: u32,
 }
 
@@ -73,29 +66,19 @@ impl Node for Stopped {
         self.steps_left -= 1;
         self.simulator.step(bus)
     }
-
-    fn health(&self) -> Health {
-        self.simulator.health()
-    }
 }
 
 #[test]
 fn an_interrupted_run_saves_its_state_and_goes_on_from_there() {
     let clean = Bench::new(0).whole_run(&Settings::default(), None).without_repeats();
     let bench = Bench::new(0);
-    let (mut recorder, recorder_bus) = bench.node(Kind::Recorder);
-    let (mut servo, servo_bus) = bench.node(Kind::Servo);
-    let (simulator, simulator_bus) = bench.simulator(&Settings::default(), None);
-    let mut stopped = Stopped { simulator, steps_left: 500 };
-    let mut actors = [
-        Actor::new(&mut *recorder, recorder_bus),
-        Actor::new(&mut *servo, servo_bus),
-        Actor::new(&mut stopped, simulator_bus),
-    ];
-    assert!(run_until(&bench.hub, &mut actors, FOREVER, |actors| actors[2].ended.is_some()));
+    let Actor { node: simulator, bus, .. } = bench.simulator(&Settings::default(), None);
+    let stopped = Stopped { simulator, steps_left: 500 };
+    let mut actors =
+        [bench.node(Kind::Recorder), bench.node(Kind::Servo), Actor::new(Box::new(stopped), bus)];
+    assert!(bench.run(&mut actors, |actors| actors[2].ended.is_some()));
     assert_eq!(exit_of(&actors[2]), Some(Exit::Interrupted));
-    run_until(&bench.hub, &mut actors[..1], bench.hub.now(), |_| false);
-    drop(actors);
+    bench.pass(&mut actors[..1], Duration::ZERO);
     let (saved, end): (msg::Packing, RunState) = {
         let record = bench.record.borrow();
         (record.last(&topics::PACKING).unwrap(), record.last(&topics::RUN_STATE).unwrap())
@@ -112,23 +95,17 @@ fn an_interrupted_run_saves_its_state_and_goes_on_from_there() {
 fn an_analyzer_that_comes_late_gets_the_last_packing_and_makes_the_same_bytes() {
     let clean = Bench::new(0).whole_run(&Settings::default(), None);
     let bench = Bench::new(0);
-    let (mut recorder, recorder_bus) = bench.node(Kind::Recorder);
-    let (mut servo, servo_bus) = bench.node(Kind::Servo);
-    let (mut simulator, simulator_bus) = bench.simulator(&Settings::default(), None);
     let mut actors = vec![
-        Actor::new(&mut *recorder, recorder_bus),
-        Actor::new(&mut *servo, servo_bus),
-        Actor::new(&mut simulator, simulator_bus),
+        bench.node(Kind::Recorder),
+        bench.node(Kind::Servo),
+        bench.simulator(&Settings::default(), None),
     ];
     let finished = |record: &Record| {
         record.last::<RunState>(&topics::RUN_STATE).is_some_and(|s| s.state == RunState::FINISHED)
     };
-    assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| finished(&bench.record.borrow())));
-    let ((mut analyzer, analyzer_bus), (mut inversion, inversion_bus)) =
-        (bench.node(Kind::Analyzer), bench.node(Kind::Inversion));
-    actors.push(Actor::new(&mut *analyzer, analyzer_bus));
-    actors.push(Actor::new(&mut *inversion, inversion_bus));
-    assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| bench.record.borrow().complete()));
+    assert!(bench.run(&mut actors, |_| finished(&bench.record.borrow())));
+    actors.extend([Kind::Analyzer, Kind::Inversion].map(|kind| bench.node(kind)));
+    assert!(bench.run(&mut actors, |_| bench.record.borrow().complete()));
     for topic in [topics::PACKING_REPORT, topics::MICROSTRUCTURE] {
         assert!(
             bench.record.borrow().bodies(&topic) == &clean.bodies(&topic)[clean.bodies(&topic).len() - 1..]
@@ -141,19 +118,12 @@ fn a_run_waits_for_the_readers_it_was_told_to_wait_for() {
     let bench = Bench::new(0);
     let settings =
         Settings { wait_for: vec![topics::STRESS, topics::PACKING], min_readers: 2, ..Settings::default() };
-    let (mut simulator, simulator_bus) = bench.simulator(&settings, None);
-    let (mut servo, servo_bus) = bench.node(Kind::Servo);
-    let (mut analyzer, analyzer_bus) = bench.node(Kind::Analyzer);
-    let mut actors = vec![
-        Actor::new(&mut simulator, simulator_bus),
-        Actor::new(&mut *servo, servo_bus),
-        Actor::new(&mut *analyzer, analyzer_bus),
-    ];
-    run_until(&bench.hub, &mut actors, Duration::from_secs(60), |_| false);
+    let mut actors =
+        vec![bench.simulator(&settings, None), bench.node(Kind::Servo), bench.node(Kind::Analyzer)];
+    bench.pass(&mut actors, Duration::from_secs(60));
     assert_eq!(actors[0].bus.published()[0].count, 0, "there is one reader of each only");
-    let (mut recorder, recorder_bus) = bench.node(Kind::Recorder);
-    actors.push(Actor::new(&mut *recorder, recorder_bus));
-    assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| requests(&bench.record.borrow()) > 10));
+    actors.push(bench.node(Kind::Recorder));
+    assert!(bench.run(&mut actors, |_| requests(&bench.record.borrow()) > 10));
     let first: Vec<msg::Stress> = bench.record.borrow().messages(&topics::STRESS);
     assert_eq!(first[0].sequence, 0, "the recorder missed nothing");
 }
@@ -165,24 +135,19 @@ fn a_second_simulator_ends_and_the_first_one_does_not_notice() {
     // The intruder joins first, so that its GUID is the smaller one; nevertheless the running simulator
     // continues.
     let mut intruder_bus = bench.bus("dem_simulator");
-    let (mut recorder, recorder_bus) = bench.node(Kind::Recorder);
-    let (mut analyzer, analyzer_bus) = bench.node(Kind::Analyzer);
-    let (mut inversion, inversion_bus) = bench.node(Kind::Inversion);
-    let (mut servo, servo_bus) = bench.node(Kind::Servo);
-    let (mut simulator, simulator_bus) = bench.simulator(&Settings::default(), None);
     let mut actors = vec![
-        Actor::new(&mut *recorder, recorder_bus),
-        Actor::new(&mut *analyzer, analyzer_bus),
-        Actor::new(&mut *inversion, inversion_bus),
-        Actor::new(&mut *servo, servo_bus),
-        Actor::new(&mut simulator, simulator_bus),
+        bench.node(Kind::Recorder),
+        bench.node(Kind::Analyzer),
+        bench.node(Kind::Inversion),
+        bench.node(Kind::Servo),
+        bench.simulator(&Settings::default(), None),
     ];
     // Delays give the intruder time for its check while the run lasts.
     bench.hub.set_faults("/stress", Faults { delay: Duration::from_millis(20), ..Default::default() });
-    assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| requests(&bench.record.borrow()) > 100));
-    let mut intruder = DemSimulator::new(&mut intruder_bus, tiny(), None, Settings::default()).unwrap();
-    actors.push(Actor::new(&mut intruder, intruder_bus));
-    assert!(run_until(&bench.hub, &mut actors, FOREVER, |actors| actors[5].ended.is_some()));
+    assert!(bench.run(&mut actors, |_| requests(&bench.record.borrow()) > 100));
+    let intruder = DemSimulator::new(&mut intruder_bus, tiny(), None, Settings::default()).unwrap();
+    actors.push(Actor::new(Box::new(intruder), intruder_bus));
+    assert!(bench.run(&mut actors, |actors| actors[5].ended.is_some()));
     assert!(!bench.record.borrow().complete(), "the run was still under way");
     assert_eq!(exit_of(&actors[5]), Some(Exit::Failure));
     let message = actors[5].ended.as_ref().map(|e| format!("{}", e.as_ref().unwrap_err())).unwrap();
@@ -193,26 +158,22 @@ fn a_second_simulator_ends_and_the_first_one_does_not_notice() {
     let all = clean.bodies(&topics::STRESS).len();
     let whole =
         |record: &Record| record.complete() && record.without_repeats().bodies(&topics::STRESS).len() >= all;
-    assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| whole(&bench.record.borrow())));
+    assert!(bench.run(&mut actors, |_| whole(&bench.record.borrow())));
     assert_eq!(bench.record.borrow().without_repeats().difference(&clean), None);
 }
 
 #[test]
 fn of_two_simulators_that_start_at_once_one_runs() {
     let bench = Bench::new(0);
-    let (mut recorder, recorder_bus) = bench.node(Kind::Recorder);
-    let (mut servo, servo_bus) = bench.node(Kind::Servo);
-    let (mut smaller, smaller_bus) = bench.simulator(&Settings::default(), None);
-    let (mut larger, larger_bus) = bench.simulator(&Settings::default(), None);
     let mut actors = vec![
-        Actor::new(&mut *recorder, recorder_bus),
-        Actor::new(&mut *servo, servo_bus),
-        Actor::new(&mut smaller, smaller_bus),
-        Actor::new(&mut larger, larger_bus),
+        bench.node(Kind::Recorder),
+        bench.node(Kind::Servo),
+        bench.simulator(&Settings::default(), None),
+        bench.simulator(&Settings::default(), None),
     ];
-    assert!(run_until(&bench.hub, &mut actors, FOREVER, |actors| actors.iter().any(|a| a.ended.is_some())));
+    assert!(bench.run(&mut actors, |actors| actors.iter().any(|a| a.ended.is_some())));
     assert_eq!(exit_of(&actors[3]), Some(Exit::Failure), "the larger GUID gives way");
     // The process ends, and its endpoints leave the graph.
     actors.pop();
-    assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| requests(&bench.record.borrow()) > 10));
+    assert!(bench.run(&mut actors, |_| requests(&bench.record.borrow()) > 10));
 }

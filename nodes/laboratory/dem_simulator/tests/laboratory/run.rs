@@ -1,10 +1,10 @@
 //! A run from beginning to end.
 
-use grainlab_buskit::{Bench, FOREVER, Kind, Record, exit_of};
+use grainlab_buskit::{Bench, Kind, Record, exit_of};
 use grainlab_dem_simulator::Settings;
 use grainlab_msgs::msg::{Estimate, Microstructure, Packing, PackingReport, RunState, StrainRate, Stress};
 use grainlab_msgs::{Topic, stamp, topics};
-use grainlab_node_kit::{Actor, Exit, run_until};
+use grainlab_node_kit::Exit;
 use std::time::Duration;
 
 fn pressure(PackingReport { stress, .. }: &PackingReport) -> f64 {
@@ -105,29 +105,23 @@ fn end_of_simulator(until_inverted: &[Topic], with_inversion: bool) -> (Option<E
     let bench = Bench::new(0);
     let settings =
         Settings { exit_when_finished: true, until_inverted: until_inverted.to_vec(), ..Settings::default() };
-    let (mut recorder, recorder_bus) = bench.node(Kind::Recorder);
-    let (mut analyzer, analyzer_bus) = bench.node(Kind::Analyzer);
-    let (mut inversion, inversion_bus) = bench.node(Kind::Inversion);
-    let (mut servo, servo_bus) = bench.node(Kind::Servo);
-    let (mut simulator, simulator_bus) = bench.simulator(&settings, None);
     let mut actors = vec![
-        Actor::new(&mut simulator, simulator_bus),
-        Actor::new(&mut *recorder, recorder_bus),
-        Actor::new(&mut *servo, servo_bus),
-        Actor::new(&mut *analyzer, analyzer_bus),
+        bench.simulator(&settings, None),
+        bench.node(Kind::Recorder),
+        bench.node(Kind::Servo),
+        bench.node(Kind::Analyzer),
     ];
     if with_inversion {
-        actors.push(Actor::new(&mut *inversion, inversion_bus));
+        actors.push(bench.node(Kind::Inversion));
     }
     let finished = || {
         let state = bench.record.borrow().last::<RunState>(&topics::RUN_STATE);
         state.is_some_and(|s| s.state == RunState::FINISHED)
     };
-    run_until(&bench.hub, &mut actors, FOREVER, |actors| finished() || actors[0].ended.is_some());
+    bench.run(&mut actors, |actors| finished() || actors[0].ended.is_some());
     let done = bench.hub.now();
-    run_until(&bench.hub, &mut actors, FOREVER, |actors| actors[0].ended.is_some());
+    bench.run(&mut actors, |actors| actors[0].ended.is_some());
     let (exit, took) = (exit_of(&actors[0]), bench.hub.now() - done);
-    drop(actors);
     (exit, took, bench.record.take())
 }
 

@@ -88,7 +88,7 @@ fn a_burst_of_shots_is_inverted_whole_and_what_is_lost_of_a_longer_one_is_counte
         }
         node.step(&mut node_bus).unwrap();
         let answers = std::iter::from_fn(|| found.take_valid(&mut bus).unwrap()).count();
-        let missed = node.health().values.into_iter().find(|(key, _)| key == "missed").unwrap().1;
+        let missed = node.health().value("missed").unwrap().to_owned();
         (answers, missed)
     };
     assert_eq!(burst(200), (200, "0".into()));

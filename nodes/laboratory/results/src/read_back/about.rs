@@ -24,9 +24,7 @@ pub(super) enum Unused {
     OfAnotherRun(RunSign),
 }
 
-/// The answer to one set of data.
 struct Answer {
-    /// Topic of the data.
     source: String,
     identity: Identity,
     /// Number among the answers of this inversion with the same identity.

@@ -4,7 +4,6 @@ use super::finding::Finding;
 use crate::graph::{Endpoint, Graph, TopicEntry, is_reliable, is_transient_local};
 use grainlab_msgs::TypeInfo;
 
-/// Findings about all topics.
 pub(super) fn findings(graph: &Graph) -> Vec<Finding> {
     let topics = graph.topics();
     let mut found = Vec::new();

@@ -1,7 +1,8 @@
 //! Network and environment of this host.
 
 use super::finding::Finding;
-use super::processes::{first_port, udp_sockets};
+use super::processes::first_port;
+use grainlab_node_kit::processes::udp_sockets;
 use grainlab_node_kit::{Network, Reach};
 use socket2::{Domain, Protocol, Socket, Type};
 use std::collections::BTreeSet;
@@ -160,7 +161,7 @@ fn receive_limit() -> Option<u64> {
 /// Domains in which a UDP port of discovery is in use on this host.
 fn domains_in_use() -> BTreeSet<u16> {
     // The first port of a domain is that of multicast discovery, which every participant opens.
-    let above = udp_sockets().into_iter().filter_map(|(port, _)| port.checked_sub(first_port(0)));
+    let above = udp_sockets().into_iter().filter_map(|socket| socket.port.checked_sub(first_port(0)));
     above.filter(|above| above % 250 == 0).map(|above| above / 250).collect()
 }
 

@@ -71,7 +71,6 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(if wrong { Exit::Failure } else { Exit::Done })
 }
 
-/// Findings in the graph of the domain.
 fn of_domain(mut observer: Observer, args: &Args, view: &mut View) -> Result<Vec<Finding>, Failure> {
     let graph = observer.discovered(args.common.patience().max(LEAST), |_| false);
     let mut findings = endpoints::findings(&graph);

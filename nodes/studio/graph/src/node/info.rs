@@ -8,7 +8,6 @@ use grainlab_node_kit::Exit;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Names and types.
 type Names = BTreeMap<String, String>;
 
 #[derive(Serialize)]

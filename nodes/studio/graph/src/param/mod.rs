@@ -1,6 +1,5 @@
 //! The command `grainlab param`.
 
-mod client;
 mod commands;
 mod value;
 

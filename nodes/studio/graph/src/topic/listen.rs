@@ -22,7 +22,6 @@ const PACKINGS: u32 = 16;
 pub(crate) struct Listener {
     bus: DdsBus,
     source: Source,
-    /// Name and type.
     pub(crate) topic: Topic,
 }
 

@@ -30,7 +30,6 @@ impl QosArgs {
         }
     }
 
-    /// Policies of a publisher.
     pub(super) fn offered(&self) -> Qos {
         self.with(Qos { reliable: true, depth: DEPTH, transient_local: false })
     }

@@ -78,7 +78,6 @@ pub(super) struct Summary {
 }
 
 impl Stream {
-    /// Counts a sample.
     pub(super) fn add(&mut self, info: &SampleInfo, bytes: usize) {
         self.bytes += bytes as u64;
         let time = info.source_time.unwrap_or(info.received);

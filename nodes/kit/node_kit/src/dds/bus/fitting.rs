@@ -21,19 +21,18 @@ impl DdsBus {
         // A writer is known before its first sample, but perhaps not here yet.
         let mut follower = lock(&self.follower);
         follower.follow();
-        let subscriber = self.subscribers.get_mut(subscription.0).ok_or(BusError::Handle("take"))?;
-        let reader = self.readers.get_mut(subscriber.reader).ok_or(BusError::Handle("take"))?;
+        let reader = self.readers.get_mut(subscription.0).ok_or(BusError::Handle("take"))?;
         let mut inbox = lock(&reader.inbox);
         if std::mem::take(&mut reader.notified) {
             inbox.reader.acknowledge();
         }
-        let mut sample = inbox.take(subscriber.place)?;
+        let mut sample = inbox.take()?;
         while let Some((writer, why)) = sample
             .as_ref()
             .and_then(|s| Some((s.info.writer, follower.graph.misfit(&s.info.writer, &reader.info)?)))
         {
-            subscriber.refused += 1;
-            if self.refused.insert((writer, subscription.0)) {
+            reader.refused += 1;
+            if reader.unfit.insert(writer) {
                 let (who, known) = (self.gate.describe(&writer.participant()), reader.info.type_name);
                 log::error!(
                     "{}: {who}: {why}, not the {known} of this program: its messages are not read. Use one version of \
@@ -41,10 +40,10 @@ impl DdsBus {
                     reader.topic
                 );
             }
-            sample = inbox.take(subscriber.place)?;
+            sample = inbox.take()?;
         }
         match sample {
-            Some(_) => subscriber.taken += 1,
+            Some(_) => reader.taken += 1,
             None => reader.ready = false,
         }
         Ok(sample)
@@ -59,13 +58,11 @@ impl DdsBus {
 
     /// Returns what writers announced to a subscription, without the writers whose samples do not fit its type.
     pub(super) fn announced_to(&self, subscription: SubscriptionId) -> Vec<Announced> {
-        let reader = self.subscribers.get(subscription.0).and_then(|s| self.readers.get(s.reader));
-        let Some(reader) = reader else { return Vec::new() };
+        let Some(reader) = self.readers.get(subscription.0) else { return Vec::new() };
         let mut all = self.gate.announced(reader.guid, reader.latched);
         let graph = &lock(&self.follower).graph;
-        let is_refused = |writer: &Guid| {
-            self.refused.contains(&(*writer, subscription.0)) || graph.misfit(writer, &reader.info).is_some()
-        };
+        let is_refused =
+            |writer: &Guid| reader.unfit.contains(writer) || graph.misfit(writer, &reader.info).is_some();
         all.retain(|announced| !is_refused(&announced.writer));
         all
     }

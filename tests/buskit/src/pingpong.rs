@@ -4,12 +4,9 @@
 //! with the same sequence. Writers are reliable, the partners read best effort and the pinging side repeats, as in the
 //! real exchange.
 
-use crate::bus::Bus;
-use crate::bus_error::BusError;
-use crate::demand::Demand;
-use crate::typed::{Publisher, Subscription};
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::topics;
+use grainlab_node_kit::{Bus, BusError, Demand, Publisher, Subscription};
 use std::time::{Duration, Instant};
 
 /// Number of exchanges before the measurement: discovery, first allocations.
