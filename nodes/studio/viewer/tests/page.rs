@@ -1,36 +1,18 @@
 //! The page of packings, and the states of a film.
 
-use grainlab_core::{Cell, Contact, Packing, Vec3};
+use grainlab_core::{Cell, Packing, Vec3};
 use grainlab_viewer::{Film, View, page};
 
-/// Four grains on a line along x, each touching the next, the last one the image of the first; and one alone.
-fn chain() -> Packing {
-    let radius = 1e-3;
-    let positions: Vec<Vec3> = (0..4)
-        .map(|n| Vec3::new(2e-3 * f64::from(n) + 1e-3, 4e-3, 4e-3))
-        .chain([Vec3::new(4e-3, 4e-3, 7e-3)])
-        .collect();
-    let contact = |i: u32, j: u32, image: [i8; 3], toward: f64, force: f64| {
-        Contact::pressed([i, j], image, Vec3::x() * toward, 1e-9, force)
-    };
-    Packing {
-        step: 1,
-        ids: (1..=5).collect(),
-        contacts: vec![
-            contact(0, 1, [0; 3], 1.0, 1.0),
-            contact(0, 3, [-1, 0, 0], -1.0, 2.0),
-            contact(1, 2, [0; 3], 1.0, 3.0),
-            contact(2, 3, [0; 3], 1.0, 4.0),
-        ],
-        friction: 0.3,
-        ..Packing::at_rest(Cell::cube(8e-3).unwrap(), vec![radius; 5], positions)
-    }
+/// Seven grains on the diagonal of their cell.
+fn grains() -> Packing {
+    let positions = (1..8).map(|n| Vec3::repeat(1e-3 * f64::from(n))).collect();
+    Packing::at_rest(Cell::cube(8e-3).unwrap(), vec![0.5e-3; 7], positions)
 }
 
 #[test]
 fn a_page_loads_nothing_and_has_every_state() {
-    let views = [View::new(&chain(), "first <state>"), View::new(&chain(), "second")];
-    let text = page("A chain", "five grains", "chain", &views.iter().collect::<Vec<_>>());
+    let views = [View::new(&grains(), "first <state>"), View::new(&grains(), "second")];
+    let text = page("Grains", "seven grains", "grains", &views.iter().collect::<Vec<_>>());
     assert!(
         text.contains("viewer-state-0")
             && text.contains("viewer-state-1")
@@ -54,7 +36,7 @@ fn a_film_that_is_too_long_keeps_its_first_and_last_states_in_order() {
     let name = |n: usize| format!("state {n}");
     for count in [1, 2, 3, 10, 63, 64, 65, 100] {
         let mut film = Film::within(4000);
-        (0..count).for_each(|n| film.push(View::new(&chain(), name(n))));
+        (0..count).for_each(|n| film.push(View::new(&grains(), name(n))));
         let labels: Vec<&str> = film.states().iter().map(|v| v.label.as_str()).collect();
         assert_eq!(
             (film.count(), labels[0], labels[labels.len() - 1]),
