@@ -68,7 +68,7 @@ enum Studio {
     Campaign(campaign::Args),
     /// Report runs: a page with results, plots and packings; for many runs one row per run.
     Report(report::Args),
-    /// Show packings in three dimensions, or with --live a running laboratory, as a page.
+    /// Show packings in three dimensions, as a page or PNG, or with --live a running laboratory.
     View(Box<view::Args>),
     /// Reproduce the tables and figures of the paper: sixteen states, one page.
     Reproduce(reproduce::Args),

@@ -118,10 +118,6 @@ const REMOVED: &[(&str, &str)] = &[
         "groups.csv of the campaign has the means of each set of values, and grainlab reproduce the numbers of the paper",
     ),
     (
-        "view --png|--size|--state|--color|--slice|--force-chains|--dark",
-        "the page of grainlab view FILE --open has all that, and Save PNG; without a browser, bag export --format vtk for ParaView, or to_ovito of Python",
-    ),
-    (
         "bench",
         "in a checkout of the repository, cargo run --release -p grainlab_bench -- overview, or the other bench with its flags; --help lists all",
     ),

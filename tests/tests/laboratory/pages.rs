@@ -1,4 +1,4 @@
-//! Pages: of a run, of many runs, of a packing, and the page of a running laboratory.
+//! Pages and pictures: of a run, of many runs, of a packing, and the page of a running laboratory.
 
 use grainlab_msgs::{msg, simulated_seconds};
 use grainlab_recordings::Recording;
@@ -88,6 +88,26 @@ fn a_report_that_cannot_be_written_changes_neither_the_exit_code_nor_the_run() {
     std::fs::create_dir(run.join("report.html")).unwrap();
     let ended = launcher.ended(LIMIT).assert_code(0).assert_says(&["no report"]);
     assert!(run.join("summary.json").exists() && !ended.stdout.contains("report.html"));
+}
+
+#[test]
+fn a_picture_is_drawn_without_a_display_and_is_the_same_every_time() {
+    let lab = Lab::new();
+    let packing = golden("packings/isotropic_2000.csv.gz");
+    let draw = |name: &str, extra: &[&str]| {
+        let packing = packing.to_string_lossy();
+        let mut arguments = vec!["view", &packing, "--png", name, "--size", "300x200"];
+        arguments.extend(extra);
+        lab.run(&arguments).assert_code(0);
+        std::fs::read(lab.folder().join(name)).unwrap()
+    };
+    let first = draw("a.png", &[]);
+    assert!(first.starts_with(b"\x89PNG") && first == draw("b.png", &[]));
+    assert_ne!(first, draw("c.png", &["--color", "force"]));
+    for (wrong, code) in [("--size=9", 2), ("--state=0", 2), ("--state=2", 1), ("--state=-2", 1)] {
+        lab.run(&["view", &packing.to_string_lossy(), "--png", "d.png", wrong]).assert_code(code);
+        assert!(!lab.folder().join("d.png").exists());
+    }
 }
 
 #[test]

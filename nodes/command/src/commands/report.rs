@@ -35,7 +35,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     if let [run] = args.runs.as_slice() {
         let found = read(run)?;
         let path = args.output.clone().map_or_else(|| default_page(beside(run)), Ok)?;
-        write_whole(&path, found.html())?;
+        write(&found, &path)?;
         print(&format!("{}\n", path.display()))?;
         return Ok(standing(run, &found));
     }
@@ -45,7 +45,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     for directory in &args.runs {
         match read(directory).and_then(|run| Ok((run, default_page(beside(directory))?))) {
             Ok((run, path)) => {
-                write_whole(&path, run.html())?;
+                write(&run, &path)?;
                 exit = worse(exit, standing(directory, &run));
                 if all.iter().any(|(other, _)| run.repeats(other)) {
                     repeated += 1;
@@ -97,6 +97,11 @@ fn standing(path: &Path, run: &Run) -> Exit {
         return Exit::DataLoss;
     }
     Exit::Done
+}
+
+fn write(run: &Run, path: &Path) -> Result<(), Failure> {
+    let page = run.html().map_err(Failure::failed)?;
+    write_whole(path, &page)
 }
 
 /// The page of a run: in its folder, or beside its recording and named after it, since a folder may have several.

@@ -1,12 +1,12 @@
-//! `grainlab view`: packings in three dimensions, and a running laboratory, as a page.
+//! `grainlab view`: packings in three dimensions, as a page or as a picture; a running laboratory as a page.
 
 use super::packings::import;
 use super::run::ros_arguments;
-use grainlab_console::{Failure, count, has_name_of, print, say, worse, write_whole};
+use grainlab_console::{Failure, count, has_name_of, print, worse, write_whole};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::import::{ImportError, Imported, each};
 use grainlab_report::default_page;
-use grainlab_viewer::{Film, View, page};
+use grainlab_viewer::{Film, Ground, Parts, Picture, Quantity, Size, Slice, View, page};
 use std::ffi::OsStr;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -16,11 +16,13 @@ const EXAMPLES: &str = "\
 Examples:
   grainlab view recordings/runs/demo-1-1 --open          in a browser
   grainlab view packing.data -o packing.html
+  grainlab view recordings/runs/s2-1-1 --png s2.png --color force --size 1600x1200
+  grainlab view recordings/runs/s2-1-1 --png cut.png --slice x=0.4 --force-chains
   grainlab view --live --open                            the run on the bus, and the next one when it ends
   grainlab view --live --port 0 --ros-args -r __ns:=/left
 
-The cell is periodic: each grain is drawn once, whole, where its centre is, and its contacts through the faces are counted. The page
-cuts the packing, draws force chains, steps through its states, and saves what it shows as PNG, with legend and scale bar.
+The PNG is in parallel projection, with a scale bar and the directions of x, y and z. The cell is periodic: each grain is drawn
+once, whole, where its centre is, and its contacts through the faces are counted.
 
 The page of --live is served on 127.0.0.1 until Ctrl-C. Without ROS_DOMAIN_ID it finds the run that was launched on this host.
 It belongs to no run, and no process waits for it.";
@@ -33,7 +35,7 @@ pub(crate) struct Args {
     #[arg(value_name = "FILE", required_unless_present = "live")]
     file: Option<PathBuf>,
     /// Follow the running laboratory in a browser: stress, targets, curves, processes, packings
-    #[arg(long, conflicts_with_all = ["file", "output"])]
+    #[arg(long, conflicts_with_all = ["file", "output", "png"])]
     live: bool,
     /// Port of the page on 127.0.0.1, 0 for any free one [default: 8808, or any if that is taken]
     #[arg(long, value_name = "PORT", requires = "live", conflicts_with = "file")]
@@ -45,14 +47,40 @@ pub(crate) struct Args {
     #[arg(short, long, alias = "out", value_name = "FILE")]
     output: Option<PathBuf>,
     /// Show the page in a browser
-    #[arg(long)]
+    #[arg(long, conflicts_with = "png")]
     open: bool,
+    /// Draw one state into this PNG file instead, without a browser
+    #[arg(long, value_name = "FILE", conflicts_with = "output")]
+    png: Option<PathBuf>,
+    /// Size of the PNG, pixels; texts that do not fit are left out
+    #[arg(long, value_name = "WxH", default_value = "1200x900", requires = "png")]
+    size: String,
+    /// State of the PNG, counted from 1 in order of time; negative from the end
+    #[arg(long, value_name = "N", default_value_t = -1, requires = "png")]
+    state: i64,
+    /// Colours of the PNG: contacts of each grain that are not with rattlers, mean normal force of its contacts, or whether it
+    /// carries force [default: coordination]
+    #[arg(long, value_name = "QUANTITY", value_parser = Quantity::ALL.map(Quantity::name), requires = "png")]
+    color: Option<String>,
+    /// Cut of the PNG along a face of the cell, at a position from 0 to 1: what is nearer is left out [default position: 0.5]
+    #[arg(long, value_name = "x|y|z[=POSITION]", requires = "png")]
+    slice: Option<Slice>,
+    /// Contacts as force chains in the PNG, between small grains
+    #[arg(long, requires = "png")]
+    force_chains: bool,
+    /// Light letters on a dark ground in the PNG
+    #[arg(long, requires = "png")]
+    dark: bool,
     #[command(flatten)]
     import: import::Args,
 }
 
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    args.file.as_ref().map_or_else(|| live(args), |file| html(args, file))
+    match (&args.file, &args.png) {
+        (None, _) => live(args),
+        (Some(file), Some(png)) => picture(args, file, png),
+        (Some(file), None) => html(args, file),
+    }
 }
 
 fn live(args: &Args) -> Result<Exit, Failure> {
@@ -71,6 +99,26 @@ fn open(page: &OsStr) -> Result<(), Failure> {
     opened.map(|_| ()).map_err(failed)
 }
 
+/// Passes on the packings of the file; the exit is the worst of its warnings and of packings that overlap too deeply.
+fn packings(
+    args: &Args,
+    file: &Path,
+    mut take: impl FnMut(Imported) -> ControlFlow<()>,
+) -> Result<Exit, Failure> {
+    let options = args.import.options()?;
+    let mut exit = Exit::Done;
+    let mut seen = |imported: Imported| {
+        exit = worse(exit, imported.exit());
+        if let Some(fault) = imported.packing.overlap_fault() {
+            grainlab_console::say!("grainlab: {}, step {}: {fault}", file.display(), imported.step);
+        }
+        take(imported)
+    };
+    let warnings = each(file, &options, &mut seen).map_err(ImportError::failure)?;
+    warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
+    Ok(worse(exit, if warnings.is_empty() { Exit::Done } else { Exit::DataLoss }))
+}
+
 fn view(imported: &Imported) -> View {
     let packing = &imported.packing;
     // A recording is known by its scene.
@@ -83,18 +131,11 @@ fn view(imported: &Imported) -> View {
 
 fn html(args: &Args, file: &Path) -> Result<Exit, Failure> {
     args.output.as_ref().map_or(Ok(()), |path| has_name_of("-o", path, "html"))?;
-    let (options, mut film, mut exit) = (args.import.options()?, Film::default(), Exit::Done);
-    let mut seen = |imported: Imported| {
-        exit = worse(exit, imported.exit());
-        if let Some(fault) = imported.packing.overlap_fault() {
-            say!("grainlab: {}, step {}: {fault}", file.display(), imported.step);
-        }
+    let mut film = Film::default();
+    let exit = packings(args, file, |imported| {
         film.push(view(&imported));
         ControlFlow::Continue(())
-    };
-    let warnings = each(file, &options, &mut seen).map_err(ImportError::failure)?;
-    warnings.iter().for_each(|w| say!("grainlab: {w}"));
-    exit = worse(exit, if warnings.is_empty() { Exit::Done } else { Exit::DataLoss });
+    })?;
     let states = film.states();
     let last = states.last().ok_or_else(|| Failure::failed(format!("{}: no packing", file.display())))?;
     let name = name(file);
@@ -108,13 +149,50 @@ fn html(args: &Args, file: &Path) -> Result<Exit, Failure> {
     };
     let grains = last.part.clone().unwrap_or_else(|| count(last.grains(), "grain"));
     let about = format!("{grains}, {shown}. Positions are rounded to 1/65536 of the cell.");
-    let text = page(&name, &about, &name, &states);
+    let text = page(&name, &about, &name, &states).map_err(Failure::failed)?;
     let path = args.output.clone().map_or_else(|| default_page(beside(file)), Ok)?;
     write_whole(&path, &text)?;
     print(&format!("{}\n", path.display()))?;
     if args.open {
         open(path.as_ref())?;
     }
+    Ok(exit)
+}
+
+fn picture(args: &Args, file: &Path, png: &Path) -> Result<Exit, Failure> {
+    has_name_of("--png", png, "png")?;
+    let size: Size = args.size.parse().map_err(|e| Failure::usage(format!("--size: {e}")))?;
+    if args.state == 0 {
+        return Err(Failure::usage("--state 0: states are counted from 1, or from -1 at the end"));
+    }
+    // Only as many of those at the end as are needed are kept.
+    let mut kept = std::collections::VecDeque::new();
+    let mut count = 0;
+    let exit = packings(args, file, |imported| {
+        count += 1;
+        if args.state > 0 && count == args.state {
+            kept.push_back(view(&imported));
+            return ControlFlow::Break(());
+        }
+        if args.state < 0 {
+            kept.push_back(view(&imported));
+            if kept.len() as u64 > args.state.unsigned_abs() {
+                kept.pop_front();
+            }
+        }
+        ControlFlow::Continue(())
+    })?;
+    let is_there = args.state > 0 || kept.len() as u64 == args.state.unsigned_abs();
+    let view = kept.pop_front().filter(|_| is_there).ok_or_else(|| {
+        Failure::failed(format!("{}: no state {}: there are {count}", file.display(), args.state))
+    })?;
+    let named = |quantity: &Quantity| args.color.as_deref() == Some(quantity.name());
+    let colour = Quantity::ALL.into_iter().find(named).unwrap_or_default();
+    let ground = if args.dark { Ground::Dark } else { Ground::Light };
+    let parts = Parts { slice: args.slice, chains: args.force_chains };
+    let bytes = Picture::of(&view, colour, size, ground, &parts).png().map_err(Failure::failed)?;
+    write_whole(png, bytes)?;
+    print(&format!("{}\n", png.display()))?;
     Ok(exit)
 }
 

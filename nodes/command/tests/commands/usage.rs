@@ -40,7 +40,6 @@ fn wrong_usage_ends_with_exit_code_2_and_names_what_is_wrong() {
         (&["run", "grainlab", "no_such_node"], "no node \"no_such_node\""),
         (&["run", "foxglove_bridge"], "grainlab run packing_pictures"),
         (&["topic", "list", "-tv"], "topic list -v was removed"),
-        (&["view", "x.csv", "--png", "x.png"], "Save PNG"),
         (&["service", "list"], "all else: ros2 service"),
         (&["run", "dem_simulator", "scene:=demo"], "scene:=demo"),
         (&["run", "dem_simulator", "--ros-args", "-p", "scene"], "\"scene\""),

@@ -1,16 +1,18 @@
 //! Packings as Python objects.
 
 use crate::arrays::{copied, field, matrix, numbers, one, row, scalars, vectors};
+use crate::parallel;
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3, contact_search};
 use grainlab_experiment::PathPosition;
 use grainlab_msgs::boundary::{packing_header, packing_message};
 use grainlab_msgs::{from_cdr, msg, to_cdr};
 use grainlab_recordings::import::Imported;
-use grainlab_viewer::{Film, View};
+use grainlab_viewer::{Film, Ground, Picture, Quantity, Size, View};
 use numpy::{Ix1, Ix2, PyArray, PyArray1, PyArray2, ToPyArray};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
+use std::sync::atomic::AtomicBool;
 
 /// A packing of spheres in a periodic cell, which never changes. ``len(packing)`` is the number of grains n; m is that of contacts. SI units.
 ///
@@ -115,6 +117,22 @@ impl PyPacking {
         let bytes = to_cdr(&packing_message(&imported.packing, "", imported.run_state.clone()));
         let made = py.import("grainlab._grainlab")?.getattr("unpickled")?;
         (made, (PyBytes::new(py, &bytes), &imported.source, &imported.notes)).into_pyobject(py)
+    }
+
+    /// The packing as pixels: the bytes of a PNG.
+    fn _png<'py>(slf: &Bound<'py, Self>, color: &str, size: &str) -> PyResult<Bound<'py, PyBytes>> {
+        let known = Quantity::ALL.map(Quantity::name);
+        let color = Quantity::ALL.into_iter().find(|quantity| quantity.name() == color);
+        let color = color
+            .ok_or_else(|| PyValueError::new_err(format!("color must be one of: {}", known.join(", "))))?;
+        let size: Size = size.parse().map_err(refused)?;
+        let (py, owner) = (slf.py(), slf.clone().unbind());
+        let draw = move |_: &AtomicBool| Picture::new(&owner.get().view(), color, size, Ground::Light).png();
+        Ok(PyBytes::new(py, &parallel::detach(py, draw)?.map_err(refused)?))
+    }
+
+    fn _repr_png_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyBytes>> {
+        Self::_png(slf, Quantity::default().name(), "600x450")
     }
 
     fn __len__(&self) -> usize {
@@ -334,11 +352,11 @@ impl PyPacking {
 
 /// A page that shows packings in three dimensions: HTML.
 #[pyfunction]
-pub(crate) fn page(py: Python<'_>, name: &str, packings: Vec<Py<PyPacking>>) -> String {
+pub(crate) fn page(py: Python<'_>, name: &str, packings: Vec<Py<PyPacking>>) -> PyResult<String> {
     let mut film = Film::default();
     packings.iter().for_each(|packing| film.push(packing.get().view()));
     let about = format!("{} of {} states", film.states().len(), film.count());
-    py.detach(|| grainlab_viewer::page(name, &about, name, &film.states()))
+    py.detach(|| grainlab_viewer::page(name, &about, name, &film.states())).map_err(refused)
 }
 
 fn refused(error: impl std::fmt::Display) -> PyErr {

@@ -103,7 +103,7 @@ def test_processes_return_packings(packing):
 def measured(packing):
     state = {"g12": [104.2e6] * 100, "g13": 112.4e6, "theta": 136e6, "pressure": 50e3}
     found = (grainlab.analyze([packing] * 2)["z"], grainlab.probe([packing] * 2)["g13_pa"], grainlab.invert(**state)["z"])
-    return [column.tolist() for column in found]
+    return [column.tolist() for column in found], len(packing._png("force", "60x60"))
 
 
 def test_a_forked_child_measures_many_packings_as_its_parent_did(packing):
@@ -119,9 +119,8 @@ def test_the_stress_is_that_of_the_contact_forces(packing):
     assert packing.phase == 10 and packing.end_of_phase and np.allclose(np.trace(packing.stress) / 3, 5e4, rtol=1e-3)
 
 
-def test_pages_and_files_have_the_packing(packing, tmp_path):
-    with pytest.raises(ValueError, match="to_ovito"):
-        grainlab.view(packing, tmp_path / "p.png")
+def test_pictures_and_files_have_the_packing(packing, tmp_path):
+    assert grainlab.view(packing, tmp_path / "p.png", color="force").read_bytes()[:4] == b"\x89PNG"
     assert "<iframe" in grainlab.view([packing])._repr_html_()
     for name in ("csv", "lammps", "lammps-data", "xyz", "vtk"):
         assert grainlab.export([packing], tmp_path / name, format=name), name

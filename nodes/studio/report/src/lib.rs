@@ -34,4 +34,4 @@ pub use page::{SCRIPT, STYLE};
 pub use run::Run;
 pub use series::{InferredSample, series_page};
 pub use timeline::{Timeline, view};
-pub use write::{FILE, default_page, write_report};
+pub use write::{FILE, ReportError, default_page, write_report};

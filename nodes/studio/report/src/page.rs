@@ -12,6 +12,7 @@ use grainlab_results::brief::{ended, lost_words, moduli};
 use grainlab_results::findings::{Findings, Judged, recommended};
 use grainlab_results::read_back::InvertedPacking;
 use grainlab_scene::Scene;
+use grainlab_viewer::PictureError;
 
 /// Style of plots against time and of tables of runs, in addition to that of all pages.
 pub const STYLE: &str = include_str!("../assets/report.css");
@@ -23,7 +24,10 @@ const MOST_WARNINGS: usize = 4;
 
 impl Run {
     /// The page.
-    pub fn html(&self) -> String {
+    ///
+    /// # Errors
+    /// If the picture of the packing cannot be written.
+    pub fn html(&self) -> Result<String, PictureError> {
         let (film, views) = (&self.timeline.film, self.timeline.film.states());
         let packing = match film.count() - views.len() {
             0 => Html::default(),
@@ -32,7 +36,7 @@ impl Run {
                 film.count()
             )),
         };
-        let packing = grainlab_viewer::figure(&self.name(), &views) + packing;
+        let packing = grainlab_viewer::figure(&self.name(), &views)? + packing;
         let sections = [
             ("inference", "Inferred and counted", Some(self.inferred())),
             ("packing", "The packing", (!views.is_empty()).then_some(packing)),
@@ -57,7 +61,7 @@ impl Run {
             has_bar: true,
             ..Page::default()
         };
-        page.text()
+        Ok(page.text())
     }
 
     fn stress_path(&self) -> Html {

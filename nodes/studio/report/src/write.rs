@@ -2,6 +2,7 @@
 
 use crate::run::Run;
 use grainlab_console::{Failure, replace_whole};
+use grainlab_viewer::PictureError;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -14,6 +15,22 @@ const SIGN: &[u8] = b":root{--paper:";
 
 /// Number of bytes at the start of a page that contain [`SIGN`]: only the title is before it.
 const HEAD: u64 = 8 << 10;
+
+/// Why there is no report.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The picture of the packing failed.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// The file cannot be written.
+    #[error("{}: {source}", path.display())]
+    Write {
+        /// Path of the file.
+        path: PathBuf,
+        /// Reason of the system.
+        source: std::io::Error,
+    },
+}
 
 /// Returns the path of a page that the user did not name, unless it has a file that is no page of grainlab.
 ///
@@ -44,9 +61,10 @@ fn is_page(file: &Path) -> bool {
 ///
 /// # Errors
 /// If it cannot be written. What cannot be read of the run is named in the report.
-pub fn write_report(directory: &Path) -> Result<PathBuf, Failure> {
+pub fn write_report(directory: &Path) -> Result<PathBuf, ReportError> {
     let path = directory.join(FILE);
-    replace_whole(&path, Run::read(directory).html()).map_err(Failure::at(&path))?;
+    let written = replace_whole(&path, Run::read(directory).html()?);
+    written.map_err(|source| ReportError::Write { path: path.clone(), source })?;
     Ok(path)
 }
 

@@ -102,7 +102,7 @@ fn the_page_has_the_numbers_of_the_summary_and_its_texts_are_no_markup() {
     let run = folder.path().join("made-4711-1");
     record(&run);
     summarise(&run, 3);
-    let page = Run::read(&run).html();
+    let page = Run::read(&run).html().unwrap();
     let page = visible(&page);
     for text in ["made", "4711", "12.3 s", "exit code 3", "6003", "6000", "5987", "12.5 %", "by a signal"] {
         assert!(page.contains(text), "{text} is missing");
@@ -114,7 +114,7 @@ fn the_page_has_the_numbers_of_the_summary_and_its_texts_are_no_markup() {
 fn an_extreme_of_one_exchange_is_in_the_data_of_the_page() {
     let folder = tempfile::tempdir().unwrap();
     record(folder.path());
-    let page = Run::read(folder.path()).html();
+    let page = Run::read(folder.path()).html().unwrap();
     let line = page.lines().find(|l| l.starts_with("xx,") && l.contains(",987.654"));
     assert_eq!(line, Some("xx,0.001234,987.654"));
     assert!(page.contains("series,time_s,stress_kpa\n") && page.contains("series,time_s,solid_fraction\n"));
@@ -127,7 +127,7 @@ fn a_page_loads_nothing_and_is_of_bounded_size() {
     let folder = tempfile::tempdir().unwrap();
     record(folder.path());
     summarise(folder.path(), 0);
-    let page = Run::read(folder.path()).html();
+    let page = Run::read(folder.path()).html().unwrap();
     assert!(page.len() < LARGEST, "{} bytes", page.len());
     for loads in [" src=\"http", " href=\"http", "@import", "url(http", "<link", "<iframe"] {
         assert!(!page.contains(loads), "{loads}");
@@ -147,14 +147,14 @@ fn a_page_loads_nothing_and_is_of_bounded_size() {
 fn the_same_run_gives_the_same_page() {
     let folder = tempfile::tempdir().unwrap();
     record(folder.path());
-    let page = || Run::read(folder.path()).html();
+    let page = || Run::read(folder.path()).html().unwrap();
     assert!(page() == page());
 }
 
 #[test]
 fn what_is_not_there_is_named_and_the_rest_is_shown() {
     let empty = tempfile::tempdir().unwrap();
-    let page = Run::read(empty.path()).html();
+    let page = Run::read(empty.path()).html().unwrap();
     for text in [
         "No summary",
         "No recording",
@@ -168,7 +168,7 @@ fn what_is_not_there_is_named_and_the_rest_is_shown() {
     std::fs::write(broken.path().join("summary.json"), "{\"exit\": \"x").unwrap();
     std::fs::write(broken.path().join("r_0.mcap"), b"not a recording").unwrap();
     std::fs::write(broken.path().join("scene.toml"), "grains = \"<none>\"").unwrap();
-    let page = Run::read(broken.path()).html();
+    let page = Run::read(broken.path()).html().unwrap();
     assert!(
         page.contains("No summary")
             && page.contains("No recording")
@@ -183,11 +183,11 @@ fn a_recording_that_was_cut_off_is_shown_as_far_as_it_goes() {
     let file = folder.path().join("r_0.mcap");
     let bytes = std::fs::read(&file).unwrap();
     std::fs::write(&file, &bytes[..bytes.len() * 2 / 3]).unwrap();
-    let page = Run::read(folder.path()).html();
+    let page = Run::read(folder.path()).html().unwrap();
     assert!(page.contains("Missing or not readable"), "the damage is named");
     std::fs::write(folder.path().join("summary.json"), "{\"exit\": 0}").unwrap();
     let run = Run::read(folder.path());
-    let page = run.html();
+    let page = run.html().unwrap();
     assert!(page.contains(">Damaged: ") && !page.contains(">Complete"), "the page begins with the damage");
     assert!(overview(&[(run, "r.html".to_owned())]).contains("<td class=\"bad\">damaged</td>"));
 }
@@ -196,13 +196,13 @@ fn a_recording_that_was_cut_off_is_shown_as_far_as_it_goes() {
 fn a_chunk_that_is_damaged_without_truncation_is_named() {
     let folder = tempfile::tempdir().unwrap();
     record(folder.path());
-    assert!(!Run::read(folder.path()).html().contains("is left out"));
+    assert!(!Run::read(folder.path()).html().unwrap().contains("is left out"));
     let file = folder.path().join("r_0.mcap");
     let mut bytes = std::fs::read(&file).unwrap();
     let at = bytes.len() / 3;
     bytes[at..at + 64].fill(0xa5);
     std::fs::write(&file, &bytes).unwrap();
-    assert!(Run::read(folder.path()).html().contains("is left out"), "the damaged chunk is named");
+    assert!(Run::read(folder.path()).html().unwrap().contains("is left out"), "the damaged chunk is named");
 }
 
 #[test]
@@ -274,7 +274,7 @@ fn requests_of_two_runs_are_not_drawn_as_one() {
     let run = Run::read(folder.path());
     let several = run.several_runs().map(ToString::to_string).unwrap_or_default();
     assert!(several.contains("two different requests of number 2"), "{several}");
-    assert!(run.html().contains("holds several runs"));
+    assert!(run.html().unwrap().contains("holds several runs"));
 }
 
 #[test]
@@ -282,7 +282,7 @@ fn a_run_with_a_part_of_a_killed_recorder_does_not_claim_that_nothing_was_lost()
     let folder = tempfile::tempdir().unwrap();
     record(folder.path());
     summarise(folder.path(), 0);
-    let page = || Run::read(folder.path()).html();
+    let page = || Run::read(folder.path()).html().unwrap();
     assert!(!page().contains("not counting"));
     let file = folder.path().join("r_0.mcap");
     let bytes = std::fs::read(&file).unwrap();
@@ -298,7 +298,7 @@ fn a_summary_of_another_run_is_left_out_and_said_to_be() {
     let page = |run: &str| {
         let text = format!(r#"{{"run": "{run}", "wall_seconds": 12.34, "exit": 0}}"#);
         std::fs::write(folder.path().join("summary.json"), text).unwrap();
-        Run::read(folder.path()).html()
+        Run::read(folder.path()).html().unwrap()
     };
     assert!(page("a0b1").contains("12.3 s"));
     let other = page("c2d3");
@@ -310,7 +310,7 @@ fn a_summary_of_another_run_is_left_out_and_said_to_be() {
 fn the_command_that_repeats_a_run_has_its_launch_file_and_arguments() {
     let folder = tempfile::tempdir().unwrap();
     record(folder.path());
-    let page = || Run::read(folder.path()).html();
+    let page = || Run::read(folder.path()).html().unwrap();
     assert!(page().contains("how it was launched is not recorded") && !page().contains("the same bytes"));
     let launched = r#"{"launch": "", "arguments": {}, "seed": 1, "words": ["my lab.yaml", "simd:=scalar"]}"#;
     std::fs::write(folder.path().join("launch.json"), launched).unwrap();
@@ -344,7 +344,7 @@ fn moduli_and_pressure_of_soft_grains_keep_three_digits_on_a_page() {
         [("/packing", 1, to_cdr(&packing)), ("/packing_report", 2, to_cdr(&message))].into_iter(),
     );
     summarise(&run, 0);
-    let page = Run::read(&run).html();
+    let page = Run::read(&run).html().unwrap();
     let [g12, _, theta] = grainlab_results::brief::moduli(&report);
     let pressure = report.pressure() / 1e3;
     for (name, value) in [("G12", g12.unwrap()), ("theta", theta.unwrap()), ("p", pressure)] {
@@ -365,7 +365,7 @@ fn a_run_is_said_to_repeat_only_with_the_scene_and_the_seed_of_the_recording() {
     put("scene.toml", &scene);
     put("launch.json", r#"{"launch": "", "arguments": {}, "seed": 3, "words": []}"#);
     put("summary.json", r#"{"scene": "made", "seed": 3, "exit": 0}"#);
-    let page = || visible(&Run::read(folder.path()).html());
+    let page = || visible(&Run::read(folder.path()).html().unwrap());
     assert!(page().contains("--seed 3    # the same run: the same bytes"));
     put("summary.json", r#"{"scene": "made", "seed": 7, "exit": 0}"#);
     assert!(page().contains("states the seed 7") && page().contains("--seed 3    # the same run"));

@@ -10,7 +10,7 @@
   };
   const begin = (root, given) => {
     let { about, states } = given;
-    const stage = root.querySelector(".stage");
+    const stage = root.querySelector(".stage"), poster = root.querySelector(".poster");
     const hint = root.querySelector(".hint"), legend = root.querySelector(".legend"), picked = root.querySelector(".picked");
     const part = (name) => root.querySelector(`[data-set=${name}]`);
     let renderer;
@@ -18,7 +18,7 @@
       renderer = new THREE.WebGLRenderer({ antialias: false, preserveDrawingBuffer: true });
     } catch {
       hint.hidden = false;
-      hint.textContent = "This browser has no WebGL 2, which draws the packing.";
+      hint.textContent = "This browser has no WebGL 2: a picture of the last state.";
       root.querySelector(".controls").hidden = root.querySelector(".keys").hidden = true;
       return;
     }
@@ -35,7 +35,7 @@
     const canvas = renderer.domElement;
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "img");
-    canvas.setAttribute("aria-label", stage.dataset.alt);
+    canvas.setAttribute("aria-label", poster.alt);
     stage.insertBefore(canvas, hint);
     const scene = new THREE.Scene();
     const camera = new THREE.PerspectiveCamera(26, 1, 0.05, 30);
@@ -349,6 +349,7 @@
       build();
     };
     showRange();
+    poster.hidden = true;
     resize(full());
     reset();
     build();

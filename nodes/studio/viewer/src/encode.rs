@@ -6,14 +6,11 @@
 //! highest bit for rattlers, contacts with this grain as first, and images ((x + 2) 25 + (y + 2) 5 + z + 2).
 //! A position is so exact to 1/65536 of the cell, enough for a picture and not for a measurement.
 
+use crate::palette::{CARRIER, Colour, RAMP, RATTLER, by_coordination};
 use crate::view::View;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use grainlab_pictures::{Colour, RAMP, RATTLER, by_coordination};
 use serde::Serialize;
-
-/// A grain that carries force, where only this is shown.
-const CARRIER: Colour = [46, 104, 150];
 
 /// Data for the script in addition to the bytes.
 #[derive(Debug, Serialize)]

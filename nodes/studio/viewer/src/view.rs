@@ -27,6 +27,8 @@ pub struct View {
     pub(crate) coordination: Vec<u32>,
     /// True for each grain that is a rattler.
     pub(crate) rattler: Vec<bool>,
+    /// Mean normal force of the contacts of each grain, N; 0 without contacts.
+    pub(crate) force: Vec<f64>,
     /// The contacts, sorted by their first grain.
     pub(crate) contacts: Vec<DrawnContact>,
 }
@@ -35,7 +37,7 @@ impl View {
     /// A packing, with the name of its state. Of more than 200,000 grains those in a corner of the cell are drawn, and
     /// contacts between them.
     pub fn new(packing: &Packing, label: impl Into<String>) -> Self {
-        let Drawn { places, coordination, rattler, mut contacts, .. } = Drawn::new(packing);
+        let Drawn { places, coordination, rattler, force, mut contacts, .. } = Drawn::new(packing);
         contacts.retain(|c| c.image.iter().all(|k| k.abs() <= FARTHEST));
         let whole = Self {
             label: label.into(),
@@ -46,6 +48,7 @@ impl View {
             radii: packing.radii.clone(),
             coordination,
             rattler,
+            force,
             contacts,
         };
         if whole.grains() > MOST_GRAINS { whole.corner(MOST_GRAINS / 2) } else { whole }
@@ -78,6 +81,7 @@ impl View {
             radii: grains.iter().map(|g| self.radii[*g]).collect(),
             coordination: grains.iter().map(|g| self.coordination[*g]).collect(),
             rattler: grains.iter().map(|g| self.rattler[*g]).collect(),
+            force: grains.iter().map(|g| self.force[*g]).collect(),
             contacts: self.contacts.iter().filter_map(inside).collect(),
         }
     }

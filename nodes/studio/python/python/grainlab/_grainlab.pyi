@@ -79,6 +79,7 @@ class Packing:
     @property
     def end_of_phase(self) -> bool | None:
         """True if the phase met its end conditions at this packing; one within a phase need not be at rest. None for a packing of no run."""
+    def _png(self, color: str, size: str) -> bytes: ...
     @property
     def friction(self) -> float:
         """Friction coefficient in force; may be infinite."""

@@ -1,4 +1,4 @@
-"""Measurements of packings, their pages and their files."""
+"""Measurements of packings, their pictures and their files."""
 
 from __future__ import annotations
 
@@ -87,19 +87,29 @@ def export(packings: Packings, out: str | os.PathLike[str], *, format: str = "vt
     return sorted(set(Path(out).glob("*")) - before)
 
 
-def view(packings: Packings, out: str | os.PathLike[str] | None = None) -> Path | Page:
-    """Shows packings in three dimensions, on a page that turns and slices them and saves pictures.
+def view(
+    packings: Packings,
+    out: str | os.PathLike[str] | None = None,
+    *,
+    color: Literal["coordination", "force", "rattlers"] = "coordination",
+    size: tuple[int, int] = (1200, 900),
+) -> Path | Page:
+    """Shows packings in three dimensions.
 
-    ``out`` is the file of the page (.html); without it, the page is shown by a notebook. It shows lengths in SI units. Raises ValueError.
+    ``out`` is the file of a page (.html), to turn and slice all packings, or of a picture of the last one (.png), of this size in pixels
+    and with these colours. Without it, the page is shown by a notebook. A packing alone is a picture in a notebook. Raises ValueError.
 
-    >>> grainlab.view(packing, "packing.html")
+    >>> grainlab.view(packing, "packing.png", color="force")
     """
     found = packings_of(packings)
     if not found:
         raise ValueError("there is no packing to show")
     path = None if out is None else Path(out)
+    if path and path.suffix == ".png":
+        path.write_bytes(found[-1]._png(color, f"{size[0]}x{size[1]}"))
+        return path
     if path and path.suffix not in (".html", ".htm"):
-        raise ValueError(f"{path}: a page is .html, and saves pictures; a picture without a browser: to_ovito, and OVITO")
+        raise ValueError(f"{path}: a page is .html, and a picture .png")
     page = _grainlab.page(path.stem if path else "packings", found)
     return (path.write_text(page), path)[1] if path else Page(page)
 
