@@ -1,6 +1,7 @@
 //! CPU time, which is independent of other load on a shared machine.
 
 use grainlab_console::Failure;
+use grainlab_page::median;
 
 /// Result of some work, and the median CPU time of its repetitions by all threads, s. A failure ends them.
 pub(super) fn timed<T, E>(
@@ -15,17 +16,6 @@ pub(super) fn timed<T, E>(
         if times.len() as u32 >= repetitions || result.is_err() {
             return Ok((median(times), result));
         }
-    }
-}
-
-/// Returns the median of these values; NaN without one.
-pub(super) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    match (values.len() % 2, values.get(middle)) {
-        (_, None) => f64::NAN,
-        (0, Some(upper)) => 0.5 * (values[middle - 1] + upper),
-        (_, Some(value)) => *value,
     }
 }
 
@@ -45,16 +35,5 @@ fn seconds(clock: libc::clockid_t) -> Result<f64, Failure> {
     match unsafe { libc::clock_gettime(clock, &raw mut now) } {
         0 => Ok(now.tv_sec as f64 + 1e-9 * now.tv_nsec as f64),
         _ => Err(Failure::failed(format!("no CPU clock: {}", std::io::Error::last_os_error()))),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_median_of_an_even_count_lies_between_the_middle_two() {
-        assert_eq!([vec![3.0, 1.0, 2.0], vec![4.0, 1.0, 3.0, 2.0]].map(median), [2.0, 2.5]);
-        assert!(median(Vec::new()).is_nan());
     }
 }

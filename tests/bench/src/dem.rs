@@ -3,11 +3,11 @@
 mod stepping;
 
 use super::packing;
-use crate::cpu_time::median;
 use clap::ValueEnum;
 use grainlab_console::{Failure, Format, Table, exact, say, three_digits};
 use grainlab_dem::Simd;
 use grainlab_node_kit::Exit;
+use grainlab_page::median;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;

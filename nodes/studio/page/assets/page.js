@@ -26,6 +26,7 @@
       }
       to[n].removeAttribute("class");
     });
+    copy.querySelectorAll("clipPath rect").forEach((rect) => rect.removeAttribute("fill"));
     return copy;
   };
   // A file has the width of a column of a journal, or of its page, and the caption below the plots.

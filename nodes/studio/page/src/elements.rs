@@ -9,6 +9,8 @@ use serde::Serialize;
 pub struct Cell {
     content: Html,
     class: &'static str,
+    /// A reason, shown at the pointer and read out.
+    note: Option<String>,
     /// The number by which a table is sorted, instead of the content.
     value: Option<String>,
 }
@@ -16,7 +18,7 @@ pub struct Cell {
 impl Cell {
     /// A text of this class.
     pub fn classed(content: impl Into<Html>, class: &'static str) -> Self {
-        Self { content: content.into(), class, value: None }
+        Self { content: content.into(), class, note: None, value: None }
     }
 
     /// A cell with text.
@@ -47,6 +49,12 @@ impl Cell {
     /// A number with its sign, by [`signed`].
     pub fn signed(value: impl Into<Option<f64>>, digits: usize) -> Self {
         Self::number(signed(value, digits))
+    }
+
+    /// The cell with a reason, and of this class.
+    #[must_use]
+    pub fn noted(self, class: &'static str, note: impl Into<String>) -> Self {
+        Self { class, note: Some(note.into()), ..self }
     }
 
     /// The cell of a table that is sorted by this number.
@@ -270,11 +278,11 @@ mod tests {
 
     #[test]
     fn a_table_names_its_columns_and_rows_aligns_heads_as_their_cells_and_escapes_its_cells() {
-        let far = Cell::fixed(1.0, 2).sorted_by(1.0);
+        let far = Cell::fixed(1.0, 2).sorted_by(1.0).noted("n bad", "far");
         let text = table("a & b", ["x", "y", "z"], [[Cell::text("<a>"), Cell::fixed(None, 2), far]]);
-        let row = "<th scope=\"row\">&lt;a&gt;</th><td class=\"n\">–</td><td class=\"n\" data-value=\"1\">1.00</td>";
+        let row = "<th scope=\"row\">&lt;a&gt;</th><td class=\"n\">–</td><td class=\"n bad\" data-value=\"1\" title=\"far\">1.00";
         let heads = "<th scope=\"col\">x</th><th scope=\"col\" class=\"n\">y</th>";
-        for part in ["<caption>a &amp; b</caption>", heads, row] {
+        for part in ["<caption>a &amp; b</caption>", heads, row, "hidden\"> (far)</span></td>"] {
             assert!(text.contains(part), "{part}: {text:?}");
         }
         assert!(table("", ["x"], [[]; 0]).is_empty());

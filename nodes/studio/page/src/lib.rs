@@ -4,7 +4,7 @@
 //! - [`Html`], [`html!`]: markup, from texts and templates; [`table`], [`figure`], [`card`] and others: elements of pages
 //! - [`fixed`], [`signed`], [`six_digits`]: numbers for readers
 //! - [`plot`]: plots as SVG
-//! - [`Dataset`]: typed columns, as CSV; [`Mean`]: a mean with its standard error
+//! - [`Dataset`]: typed columns, as CSV; [`Mean`]: a mean with its standard error; [`median`]
 
 #[macro_use]
 mod markup;
@@ -23,7 +23,7 @@ pub use elements::{
 pub use markup::Html;
 #[doc(hidden)]
 pub use markup::rendered;
-pub use mean::Mean;
+pub use mean::{Mean, median};
 #[doc(hidden)]
 pub use minijinja;
 pub use page::{Page, Section};

@@ -2,21 +2,25 @@
 //! dark. Points can have tooltips.
 //!
 //! - [`Figure`]: the contents; [`Theme`]: the colours of a file; `page_style`: those of all plots of a page
-//! - [`Strip`]: a plot of a page; [`Intervals`]: values by name, with their intervals
+//! - [`Strip`]: a plot of a page; [`Rose`]: a quantity by direction; [`Bars`]: values by name; [`Intervals`]: with their intervals
 //! - `axis`: positions of values, and the tick marks of an axis
 //! - `labels`: texts beside points, if there is room
 //! - `draw`: the elements; `style`: their colours
 
 mod axis;
+mod bars;
 mod draw;
 mod figure;
 mod intervals;
 mod labels;
+mod rose;
 mod strip;
 mod style;
 
+pub use bars::{Bar, Bars};
 pub use figure::{Axis, Entry, Figure, Line, Marker, Point, Scale, Series, Theme};
 pub use intervals::{Estimated, Intervals};
+pub use rose::Rose;
 pub use strip::{Band, Strip};
 pub(crate) use style::page_style;
 

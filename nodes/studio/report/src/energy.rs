@@ -1,7 +1,7 @@
 //! Energy of a run by its losses, where the scene asked for that.
 
 use grainlab_msgs::msg::EnergyBalance;
-use grainlab_page::plot::{Estimated, Intervals};
+use grainlab_page::plot::{Bar, Bars};
 use grainlab_page::{Cell, Html, csv, figure, grid, six_digits, table};
 
 /// Columns of the table that add up several parts of a balance.
@@ -50,13 +50,12 @@ pub(crate) fn section(phases: &[EnergyBalance]) -> Option<Html> {
     let names = dissipated(phases.first()?).map(|(name, _)| name);
     let total = |i: usize| phases.iter().map(|p| dissipated(p)[i].1).sum::<f64>();
     let all: f64 = (0..names.len()).map(total).sum();
-    let rows = names.iter().enumerate().filter(|(i, _)| total(*i) != 0.0).map(|(i, name)| {
+    let bars = names.iter().enumerate().filter(|(i, _)| total(*i) != 0.0).map(|(i, name)| {
         let value = total(i) / all.abs().max(f64::MIN_POSITIVE) * 100.0;
-        let text = format!("{value:.2} %");
-        Estimated { name: (*name).to_owned(), value: Some(value), text, ..Estimated::default() }
+        Bar { name: (*name).to_owned(), colour: 0, value, text: format!("{value:.2} %") }
     });
-    let (title, meaning) = ("Energy dissipated".to_owned(), format!("% of {all:.3e} J"));
-    let plot = Intervals { title, meaning, rows: rows.collect(), reference: None }.svg();
+    let title = format!("Energy dissipated, % of {all:.3e} J");
+    let plot = Bars { title, bars: bars.collect() }.svg();
     let figure = figure("energy", plot, "Sums over the phases in the table.", &data(phases));
     Some(grid(figure) + balance(phases))
 }

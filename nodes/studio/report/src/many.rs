@@ -1,13 +1,15 @@
-//! The page of many runs: one row per run, sortable.
+//! The page of many runs: one row per run, sortable, with outliers marked.
 
-use crate::over_settings::{OverSettings, Quantities};
+use crate::outliers::Outliers;
+use crate::over_settings::{OverSettings, Quantities, strips};
 use crate::page::STYLE;
 use crate::run::Run;
 use crate::settings::{Setting, differing, keys};
 use grainlab_console::{CsvText, and, count, decimals_of};
 use grainlab_core::results::InferredQuantity;
 use grainlab_page::{
-    Cell, Html, Page, Section, data, finding, grid, heading, html, paragraph, six_digits, table, three_digits,
+    Cell, Html, Page, Section, data, finding, fixed, grid, heading, html, paragraph, six_digits, table,
+    three_digits,
 };
 use grainlab_results::brief::{ended, moduli};
 use grainlab_results::findings::{Findings, recommended};
@@ -73,7 +75,7 @@ fn numbers(run: &Run) -> Vec<Number> {
     all
 }
 
-/// False for times and counts of a computer, which say nothing about a packing.
+/// Number of times and counts of a computer: far values say nothing about a packing.
 fn is_compared(name: &str) -> bool {
     !matches!(name, "wall, s" | "lost" | "unbalanced")
 }
@@ -81,6 +83,21 @@ fn is_compared(name: &str) -> bool {
 /// The page of many runs, each with the link to its own report.
 pub fn overview(runs: &[(Run, String)]) -> String {
     let columns = numbers(&Run::default());
+    let settings = |run: &Run| (run.scene_name(), keys(&run.scene_text));
+    let mut alike: BTreeMap<_, Vec<Vec<Number>>> = BTreeMap::new();
+    for (run, _) in runs {
+        alike.entry(settings(run)).or_default().push(numbers(run));
+    }
+    let distributions: BTreeMap<_, Vec<Option<Outliers>>> = alike
+        .iter()
+        .map(|(settings, runs)| {
+            let of = |(n, (name, ..)): (usize, &Number)| {
+                if is_compared(name) { Outliers::of(runs.iter().filter_map(|r| r[n].2)) } else { None }
+            };
+            (settings, columns.iter().enumerate().map(of).collect())
+        })
+        .collect();
+    let mut marked = 0;
     let mut csv = CsvText::default();
     let names = columns.iter().map(|(name, ..)| name.as_str());
     let varied: Vec<Setting> = differing(&runs.iter().map(|(run, _)| run).collect::<Vec<_>>());
@@ -117,14 +134,29 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         let mut line = vec![no.to_string(), name, scene.clone(), seed];
         line.extend(varied.iter().map(|s| s.values[n].clone()));
         line.push(end);
-        for (_, form, value) in numbers(run) {
+        for ((_, form, value), outliers) in numbers(run).iter().zip(&distributions[&settings(run)]) {
             line.push(value.map(six_digits).unwrap_or_default());
-            row.push(value.map_or_else(|| Cell::number(""), |v| form.cell(v).sorted_by(v)));
+            row.push(value.map_or_else(
+                || Cell::number(""),
+                |v| {
+                    let cell = form.cell(v).sorted_by(v);
+                    let Some(score) = outliers.filter(|o| o.has(v)).map(|o| o.score(v)) else { return cell };
+                    marked += 1;
+                    cell.noted(
+                        "n outlier",
+                        match score.is_finite() {
+                            true => format!("outlier: robust z-score {}", fixed(score, 1)),
+                            false => "outlier: all others are alike".to_owned(),
+                        },
+                    )
+                },
+            ));
         }
         rows.push(row);
         csv.row(line);
     }
-    let about = "The last packing of each run; errors are inferred minus counted. Click a header to sort.";
+    let about = "The last packing of each run; errors are inferred less counted. Marked: outliers among six or more runs with the same settings. \
+                 Click a header to sort.";
     let content = html!(
         "{{ about }}<div class=\"drawing sortable\" id=\"runs-table\">{{ table }}\
          <p class=\"save\"><button type=\"button\" data-save=\"csv\">Save CSV</button></p>{{ data }}</div>\n",
@@ -138,14 +170,12 @@ pub fn overview(runs: &[(Run, String)]) -> String {
     };
     let compared: Vec<Quantities<'_>> = runs.iter().map(|(run, _)| compared(run)).collect();
     let over = OverSettings::of(&compared);
-    let compared = match (&over, runs) {
-        (Some(over), _) => {
-            Some(Section { id: "settings", title: "Over the settings", content: over.figures() })
-        }
+    let figures = match (&over, runs) {
+        (Some(over), _) => Section { id: "settings", title: "Over the settings", content: over.figures() },
         (None, [(a, _), (b, _)]) => {
-            Some(Section { id: "pair", title: "Side by side", content: side_by_side([a, b]) })
+            Section { id: "pair", title: "Side by side", content: side_by_side([a, b]) }
         }
-        _ => None,
+        _ => Section { id: "strips", title: "Every run", content: strips(&compared) },
     };
     let scenes: BTreeSet<String> = runs.iter().map(|(run, _)| run.scene_name()).collect();
     let scenes: Vec<String> = scenes.into_iter().collect();
@@ -175,7 +205,9 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         false => String::new(),
     };
     let done = format!("{complete} of {} complete{grains}.{differ}{only_last}", count(runs.len(), "run"));
-    let mut found = Vec::new();
+    let symbols = [InferredQuantity::Z, InferredQuantity::Eps].map(InferredQuantity::symbol);
+    let mut found: Vec<String> =
+        over.iter().flat_map(|o| symbols.iter().flat_map(|s| o.sentences(s))).collect();
     if over.is_none() && varied.len() > 2 {
         found.push("They differ in more than two settings: for figures over settings, report those that differ in one or two.".to_owned());
     }
@@ -184,6 +216,7 @@ pub fn overview(runs: &[(Run, String)]) -> String {
     let doubts = [
         (runs.len() - complete, "run", "not complete: the table says why"),
         (warned, "run", "with warnings, which its page lists"),
+        (marked, "value", "marked in the table: far from those of runs with the same settings"),
     ];
     let doubts = doubts.into_iter().filter(|(n, ..)| *n > 0);
     let of_states = Findings::doubts(&lasts, "run");
@@ -192,7 +225,7 @@ pub fn overview(runs: &[(Run, String)]) -> String {
     let page = Page {
         heading: heading("grainlab", &title, "") + finding(&done, &found, &doubts),
         title,
-        sections: compared.into_iter().chain([Section { id: "runs", title: "Runs", content }]).collect(),
+        sections: vec![figures, Section { id: "runs", title: "Runs", content }],
         styles: vec![STYLE],
         has_bar: true,
         ..Page::default()

@@ -2,7 +2,7 @@
 
 use crate::run::Run;
 use grainlab_core::Stiffness;
-use grainlab_page::plot::{Axis, Estimated, Figure, Intervals, Line, Marker, Point, Series};
+use grainlab_page::plot::{Axis, Bar, Bars, Figure, Line, Marker, Point, Series};
 use grainlab_page::{Cell, Html, csv, figure, grid, paragraph, six_digits, table, three_digits};
 use grainlab_results::brief::moduli;
 use grainlab_results::read_back::InvertedPacking;
@@ -13,8 +13,8 @@ const MPA: f64 = 1e-6;
 /// Ratio of the largest pressure to the least from which moduli are drawn over it.
 const WIDE: f64 = 1.2;
 
-/// A stiffness as a reader knows it: name, and its moduli in the order of [`NAMES`], MPa.
-type Kind = (&'static str, [f64; 6]);
+/// A stiffness as a reader knows it: name, colour, and its moduli in the order of [`NAMES`], MPa.
+type Kind = (&'static str, usize, [f64; 6]);
 
 const NAMES: [&str; 6] = ["G12", "G13", "Θ", "C11", "C33", "C13"];
 
@@ -34,23 +34,21 @@ impl Run {
             [t.g12, t.g13, c.bulk_voigt(), t.c11, t.c33, t.c13].map(|v| v * MPA)
         };
         let kinds: [Kind; 3] = [
-            ("relaxed", all(&stiffness.tensor)),
-            ("mean rotation", all(&stiffness.bounds.uniform_rotation)),
-            ("affine", all(&stiffness.bounds.affine)),
+            ("relaxed", 0, all(&stiffness.tensor)),
+            ("mean rotation", 2, all(&stiffness.bounds.uniform_rotation)),
+            ("affine", 1, all(&stiffness.bounds.affine)),
         ];
-        let points = (0..NAMES.len()).flat_map(|n| {
+        let bars = (0..NAMES.len()).flat_map(|n| {
             // That of a mean rotation is close to the affine one: the table has it.
-            kinds.iter().filter(|k| k.0 != "mean rotation").map(move |(kind, values)| Estimated {
-                name: format!("{}, {kind}", NAMES[n]),
-                value: Some(values[n]),
-                text: three_digits(values[n], 1),
-                hollow: *kind == "affine",
-                ..Estimated::default()
+            kinds.iter().filter(|k| k.0 != "mean rotation").map(move |(kind, colour, values)| Bar {
+                name: NAMES[n].to_owned(),
+                colour: *colour,
+                value: values[n],
+                text: format!("{} {kind}", three_digits(values[n], 1)),
             })
         });
-        let (title, meaning) = ("Moduli".to_owned(), "MPa; hollow: affine".to_owned());
-        let plot = Intervals { title, meaning, rows: points.collect(), reference: None };
-        let of = |n: usize| (NAMES[n], kinds.map(|k| k.1[n]));
+        let plot = Bars { title: "Moduli, MPa".into(), bars: bars.collect() };
+        let of = |n: usize| (NAMES[n], kinds.map(|k| k.2[n]));
         let data = csv(
             ["modulus", "relaxed_mpa", "mean_rotation_mpa", "affine_mpa"],
             (0..NAMES.len()).map(of).map(|(name, [relaxed, rotation, affine])| {

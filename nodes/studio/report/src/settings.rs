@@ -2,6 +2,7 @@
 
 use crate::run::Run;
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Display;
 use toml::{Table, Value};
 
 /// Keys of a scene that change nothing in it but the random numbers.
@@ -35,6 +36,11 @@ impl Setting {
     /// Name and unit, of a column or an axis.
     pub(crate) fn header(&self) -> String {
         [&*self.name, self.unit].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
+    }
+
+    /// A value with the unit.
+    pub(crate) fn of(&self, value: impl Display) -> String {
+        format!("{value} {}", self.unit).trim_end().to_owned()
     }
 
     /// Takes a key that changes together with this one.

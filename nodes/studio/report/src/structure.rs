@@ -3,8 +3,8 @@
 use crate::run::Run;
 use grainlab_core::results::{FORCE_BIN_WIDTH, ORIENTATION_BINS, PackingReport};
 use grainlab_core::{Contact, Vec3};
-use grainlab_page::plot::{Axis, Figure, Line, Point, Series};
-use grainlab_page::{Html, csv, figure, grid, paragraph, signed, six_digits};
+use grainlab_page::plot::{Axis, Figure, Line, Point, Rose, Series};
+use grainlab_page::{Html, csv, figure, grid, html, paragraph, signed, six_digits};
 
 /// Values in the bins of orientation over the mean of all directions, and a of 1 + a (3 x² − 1).
 struct Oriented {
@@ -50,38 +50,26 @@ fn contacts(report: &PackingReport) -> Option<Oriented> {
     (total > 0).then(|| Oriented { bins, a: histogram.contact_fit.as_ref().map(|fit| fit.eps) })
 }
 
-/// A plot of values in the bins of x, with the fitted curve.
-fn by_direction(id: &str, title: &str, caption: &str, colour: usize, found: &Oriented, axis: &Vec3) -> Html {
+fn rose(id: &str, title: &str, caption: &str, colour: usize, found: &Oriented, axis: &Vec3) -> Html {
     let [x, y, z] = [axis.x, axis.y, axis.z];
     let name = if *axis == Vec3::z() { "z".to_owned() } else { format!("({x:.2}, {y:.2}, {z:.2})") };
     let fitted =
         found.a.map_or_else(String::new, |a| format!(" Curve: 1 + a (3 cos² θ − 1), a = {}.", signed(a, 4)));
-    let end = |n: usize| n as f64 / ORIENTATION_BINS as f64;
-    let steps = found.bins.iter().enumerate().filter(|(_, value)| value.is_finite());
-    let steps = steps.flat_map(|(n, value)| [n, n + 1].map(|n| Point::at(end(n), *value)));
-    let curve = found.a.into_iter().flat_map(|a| {
-        let at = move |x: f64| Point::at(x, 1.0 + a * (3.0 * x * x - 1.0));
-        (0..=50).map(move |n| at(f64::from(n) / 50.0))
-    });
-    let line = |colour, line, points| Series { colour, line: Some(line), points, ..Series::default() };
-    let series =
-        vec![line(None, Line::Faint, curve.collect()), line(Some(colour), Line::Straight, steps.collect())];
-    let x = Axis::linear(format!("|cos θ|, θ from the axis {name}"));
-    let plot = Figure { title: title.to_owned(), x, series, ..Figure::default() };
-    let rows = found.bins.iter().enumerate();
-    let rows = rows.map(|(n, value)| [end(n).to_string(), end(n + 1).to_string(), six_digits(*value)]);
-    figure(id, plot.element(), format!("{caption}{fitted}"), &csv(["x_from", "x_to", "relative"], rows))
+    let end = |n: usize| (n as f64 / ORIENTATION_BINS as f64).to_string();
+    let rows = found.bins.iter().enumerate().map(|(n, value)| [end(n), end(n + 1), six_digits(*value)]);
+    let plot = Rose { title: title.to_owned(), bins: found.bins.clone(), curve: found.a, colour, axis: name };
+    figure(id, plot.svg(), format!("{caption}{fitted}"), &csv(["x_from", "x_to", "relative"], rows))
 }
 
 impl Run {
-    /// Contacts and forces by direction, and the distribution of forces.
+    /// Roses and the distribution of forces.
     pub(crate) fn structure(&self) -> Html {
         let Some(state) = self.last() else { return paragraph("No packing was measured.") };
         let report = &state.packing.report;
         let axis = report.fabric.reference_axis;
         // Forces are only in the packing itself.
         let packing = self.timeline.last.as_ref().filter(|p| p.step == state.packing.step);
-        let of_forces = |force: fn(&Contact) -> f64| {
+        let by_direction = |force: fn(&Contact) -> f64| {
             let of = |c: &Contact| (c.normal.dot(&axis).abs(), force(c));
             packing.and_then(|p| oriented(p.contacts.iter().map(of)))
         };
@@ -96,21 +84,24 @@ impl Run {
                 "Normal force",
                 "Mean over the contacts of a direction, over the mean c of all directions; c and a by least squares over the contacts.",
                 2,
-                of_forces(|c| c.normal_force),
+                by_direction(|c| c.normal_force),
             ),
             (
                 "tangential-force",
                 "Tangential force",
                 "Mean magnitude, over the mean c of all directions; c and a by least squares over the contacts.",
                 3,
-                of_forces(|c| c.tangential_force.norm()),
+                by_direction(|c| c.tangential_force.norm()),
             ),
         ];
-        let drawn = found.iter().filter_map(|(id, title, caption, colour, found)| {
-            let id = format!("{id}-by-direction");
-            Some(by_direction(&id, title, caption, *colour, found.as_ref()?, &axis))
+        let roses = found.iter().filter_map(|(id, title, caption, colour, found)| {
+            Some(rose(&format!("{id}-by-direction"), title, caption, *colour, found.as_ref()?, &axis))
         });
-        grid(drawn.collect()) + forces(report).unwrap_or_default()
+        html!(
+            "<div class=\"grid roses\">\n{{ roses }}</div>\n{{ forces }}",
+            roses => roses.collect::<Html>(),
+            forces => forces(report)
+        )
     }
 }
 

@@ -233,24 +233,31 @@ fn the_table_of_many_runs_has_a_row_for_each_and_leads_to_their_pages() {
 }
 
 #[test]
-fn a_run_repeats_another_one_only_with_its_scene_and_its_packings() {
+fn the_table_of_many_runs_marks_what_differs_among_runs_with_the_same_settings() {
     let folder = tempfile::tempdir().unwrap();
-    // The second run differs in its scene alone, the third in its result alone.
-    let runs =
-        [("one", 1, 1e-3), ("another", 2, 1e-3), ("smaller", 1, 0.5e-3)].map(|(name, seed, radius)| {
-            let run = folder.path().join(name);
+    // The sixth run differs in its result alone, and the seventh in a setting, too.
+    let runs: Vec<_> = (1..=7)
+        .map(|n| {
+            let run = folder.path().join(n.to_string());
             std::fs::create_dir(&run).unwrap();
-            let found = Packing { radii: vec![radius; 2], ..packing() };
+            let found = Packing { radii: vec![if n >= 6 { 0.5e-3 } else { 1e-3 }; 2], ..packing() };
             let sent = packing_message(&found, "made", Vec::new());
             let report = analyze(&found, &Settings::default()).unwrap().report;
             let report = packing_report_message(sent.header.clone(), &report).unwrap();
             let messages = [("/packing", 1, to_cdr(&sent)), ("/packing_report", 1, to_cdr(&report))];
             record_these(&run, messages.into_iter());
             summarise(&run, 0);
-            std::fs::write(run.join("scene.toml"), format!("seed = {seed}")).unwrap();
-            Run::read(&run)
-        });
-    assert_eq!(runs.each_ref().map(|run| run.repeats(&runs[0])), [true, false, false]);
+            let scene = format!("seed = {n}\nnumerics.skin = {}", if n == 7 { 0.2 } else { 0.1 });
+            std::fs::write(run.join("scene.toml"), scene).unwrap();
+            (Run::read(&run), format!("{n}/{FILE}"))
+        })
+        .collect();
+    let repeats = |a: usize, b: usize| runs[a].0.repeats(&runs[b].0);
+    assert!(repeats(1, 1) && !repeats(1, 2) && !repeats(4, 5) && !repeats(5, 6));
+    let page = overview(&runs);
+    let rows = page.split("<tr>").filter(|row| row.contains(FILE));
+    let marked: Vec<usize> = rows.map(|row| row.matches("class=\"n outlier\"").count()).collect();
+    assert_eq!(marked, [0, 0, 0, 0, 0, 1, 0]);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Each method, timed and compared with the stiffness of the frozen network.
 
-use crate::cpu_time::{median, timed};
+use crate::cpu_time::timed;
 use crate::numbers::{between, mean, rms};
 use crate::row::{Family, Row};
 use clap::ValueEnum;
@@ -12,6 +12,7 @@ use grainlab_console::Failure;
 use grainlab_core::{Packing, Stiffness};
 use grainlab_emt::{Conditions, Measured, Modulus, christoffel};
 use grainlab_node_kit::Exit;
+use grainlab_page::median;
 
 /// Half the width of a 95 % interval, standard deviations.
 pub(super) const INTERVAL: f64 = 1.96;

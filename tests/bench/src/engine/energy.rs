@@ -2,12 +2,12 @@
 //! is known at every seed, while differences between packings are mostly chance.
 
 use super::run::{Runs, finished, press, reason};
-use crate::cpu_time::median;
 use crate::numbers::rms;
 use crate::row::{Family, Row};
 use grainlab_console::Failure;
 use grainlab_dem::EnergyBalance;
 use grainlab_node_kit::Exit;
+use grainlab_page::median;
 use grainlab_scene::Scene;
 
 /// A row for each time step, as a share of the stability bound. Every run is timed without its energy balance, and repeated

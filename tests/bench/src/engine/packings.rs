@@ -3,11 +3,11 @@
 use super::run::{Outcome, Runs, Sample, finished, press, reason};
 use super::settings::{VariedSetting, converged};
 use super::statistics::{Observables, combined, estimate, is_resolved, paired};
-use crate::cpu_time::median;
 use crate::plot::time;
 use crate::row::{Family, Row};
 use grainlab_console::{Failure, say};
 use grainlab_node_kit::Exit;
+use grainlab_page::median;
 use grainlab_scene::Scene;
 
 /// Runs with this many times the steps of the default count as failed: twice the number needed by the slowest

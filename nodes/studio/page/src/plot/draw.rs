@@ -90,6 +90,13 @@ impl Drawing {
         self.frame
     }
 
+    /// Adds elements in a group of this class.
+    pub(super) fn group(&mut self, class: &str, draw: impl FnOnce(&mut Self)) {
+        self.add(format_args!("<g class=\"{class}\">"));
+        draw(self);
+        self.add(format_args!("</g>"));
+    }
+
     /// Adds the elements of a series, whose name scripts show.
     pub(super) fn series(&mut self, name: &str, draw: impl FnOnce(&mut Self)) {
         self.add(format_args!("<g class=\"series\" data-name=\"{}\">", escaped(name)));
@@ -112,15 +119,17 @@ impl Drawing {
     pub(super) fn marks(&mut self, x: &Range) {
         let [_, top, _, bottom] = self.frame;
         let mut free = f64::NEG_INFINITY;
-        for (value, text) in x.marks() {
-            let (at, half) = (x.at(value), HALF_LETTER * text.chars().count() as f64);
-            self.segment([at, top, at, bottom], "grid");
-            let middle = at.min(self.width - half);
-            if middle - half > free {
-                self.text([middle, bottom + 16.0], "middle", "class=\"ink\"", &text);
-                free = middle + half + HALF_LETTER;
+        self.group("marks", |drawing| {
+            for (value, text) in x.marks() {
+                let (at, half) = (x.at(value), HALF_LETTER * text.chars().count() as f64);
+                drawing.segment([at, top, at, bottom], "grid");
+                let middle = at.min(drawing.width - half);
+                if middle - half > free {
+                    drawing.text([middle, bottom + 16.0], "middle", "class=\"ink\"", &text);
+                    free = middle + half + HALF_LETTER;
+                }
             }
-        }
+        });
     }
 
     /// Both axes with their names and a grid.
@@ -132,11 +141,13 @@ impl Drawing {
     /// Both axes without the marks of the horizontal one.
     pub(super) fn other_axes(&mut self, along: &str, (y, up): (&Range, &str)) {
         let [left, top, right, bottom] = self.frame;
-        for (value, text) in y.marks() {
-            let at = y.at(value);
-            self.segment([left, at, right, at], "grid");
-            self.text([left - 8.0, at + 4.0], "end", "class=\"ink\"", &text);
-        }
+        self.group("marks-up", |drawing| {
+            for (value, text) in y.marks() {
+                let at = y.at(value);
+                drawing.segment([left, at, right, at], "grid");
+                drawing.text([left - 8.0, at + 4.0], "end", "class=\"ink\"", &text);
+            }
+        });
         self.segment([left, bottom, right, bottom], "axis");
         self.segment([left, top, left, bottom], "axis");
         if !along.is_empty() {

@@ -77,21 +77,23 @@ impl Strip {
             of(&up, y.scale)
         );
         let mut drawing = Drawing::small([WIDTH, bottom + 40.0], frame, &title, &about, &attributes);
-        self.draw_bands(&mut drawing, &across);
+        drawing.group("bands", |drawing| self.draw_bands(drawing, &across));
         if self.by_band {
             drawing.other_axes("", (&up, ""));
         } else {
             drawing.axes((&across, ""), (&up, ""));
         }
         drawing.text([right, bottom + 32.0], "end", "class=\"faint\"", &x.name);
-        self.figure.draw(&mut drawing, [&across, &up]);
+        drawing.group("curves", |drawing| self.figure.draw(drawing, [&across, &up]));
         if is_beside {
             let ends =
                 named.iter().filter_map(|s| s.points.iter().rfind(|p| up.has(p.y))).map(|p| up.at(p.y));
-            for (series, at) in named.iter().zip(spread(ends.collect(), [top, bottom])) {
-                let of = format!("class=\"{}\" fill=\"currentColor\"", class(series.colour));
-                drawing.text([right + 5.0, at + 4.0], "start", &of, &series.name);
-            }
+            drawing.group("ends", |drawing| {
+                for (series, at) in named.iter().zip(spread(ends.collect(), [top, bottom])) {
+                    let of = format!("class=\"{}\" fill=\"currentColor\"", class(series.colour));
+                    drawing.text([right + 5.0, at + 4.0], "start", &of, &series.name);
+                }
+            });
         }
         for (n, row) in rows.iter().enumerate() {
             let mut at = 8.0;
@@ -106,7 +108,6 @@ impl Strip {
     fn draw_bands(&self, drawing: &mut Drawing, across: &Range) {
         let ([_, top, _, bottom], [low, high]) = (drawing.frame(), across.ends());
         let mut free = f64::NEG_INFINITY;
-        drawing.add(format_args!("<g class=\"bands\">"));
         for (n, band) in self.bands.iter().enumerate() {
             let [from, to] = band.range.map(|v| across.at(v.clamp(low, high)));
             let fill = if n % 2 == 0 { "band" } else { "paper" };
@@ -123,7 +124,6 @@ impl Strip {
                 free = middle + half + LETTER;
             }
         }
-        drawing.add(format_args!("</g>"));
     }
 }
 
