@@ -114,10 +114,6 @@ const REMOVED: &[(&str, &str)] = &[
     ("bag convert --level", "--compression zstd, which has the level 1"),
     ("bag convert --chunk-size", "chunks of 1 MiB, as bag convert writes them"),
     (
-        "reproduce --distance",
-        "groups.csv of the campaign has the means of each set of values, and grainlab reproduce the numbers of the paper",
-    ),
-    (
         "bench",
         "in a checkout of the repository, cargo run --release -p grainlab_bench -- overview, or the other bench with its flags; --help lists all",
     ),

@@ -1,11 +1,12 @@
 //! `grainlab reproduce`: the tables and figures of the paper.
 
 use super::campaign::{self, gather};
-use grainlab_campaign::{Campaign, Engine, Options};
-use grainlab_console::{Failure, Format, print, worse};
+use grainlab_campaign::{Campaign, Engine, Folder, Options};
+use grainlab_console::{Failure, Format, Table, fixed, print, worse};
 use grainlab_node_kit::Exit;
-use grainlab_paper::{Observed, States};
+use grainlab_paper::{DISTANCE, Observed, States, distance};
 use grainlab_reproduce::{Provenance, Reproduction, Size, campaign_text, pressure_of_phase, sample_of_scene};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Grains of each packing of --quick.
@@ -19,7 +20,8 @@ every model judged. Started again after an interruption, it continues, to the sa
 Examples:
   grainlab reproduce                  one seed
   grainlab reproduce --seeds 5        with standard errors
-  grainlab reproduce --quick          500 grains, within a minute";
+  grainlab reproduce --quick          500 grains, within a minute
+  grainlab campaign nodes/scenes/campaigns/search.toml && grainlab reproduce --distance recordings/campaigns/search";
 
 /// The reproduction to make.
 #[derive(Debug, clap::Args)]
@@ -40,6 +42,10 @@ pub(crate) struct Args {
     /// Folder of the runs and of the page [default: recordings/campaigns/paper-GRAINS]
     #[arg(long, short, alias = "output", value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Instead, judge a campaign over s1 to s4: how far the means of each set of values are from Tables I and II, term by
+    /// term
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["seeds", "first_seed", "grains", "quick", "out"])]
+    distance: Option<PathBuf>,
     #[command(flatten)]
     options: Options,
     /// Format of the result
@@ -48,6 +54,9 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    if let Some(folder) = &args.distance {
+        return judge(folder, args.format);
+    }
     let grains = args.grains.unwrap_or(if args.quick { QUICK } else { 2000 });
     let size = Size { grains, seeds: args.seeds, first_seed: args.first_seed };
     let mut campaign = Campaign::parse(&campaign_text(size), Path::new(""))?;
@@ -86,6 +95,28 @@ fn observed(state: gather::State<'_>) -> Option<Observed> {
         seed: state.member.seed,
         report: state.found.packing.report,
     })
+}
+
+/// Judges each set of values of a campaign.
+fn judge(folder: &Path, format: Format) -> Result<Exit, Failure> {
+    let (folder, campaign) = Folder::open(folder)?;
+    let (states, exit) = gather::states(&campaign, &folder)?;
+    let mut groups: BTreeMap<String, Vec<Observed>> = BTreeMap::new();
+    for state in states {
+        let settings = state.member.sets().join(" ");
+        groups.entry(settings).or_default().extend(observed(state));
+    }
+    let judged = groups.into_iter().map(|(settings, all)| (settings, distance(&States::new(all))));
+    let mut judged: Vec<(String, Option<[f64; 7]>)> = judged.collect();
+    let total = |terms: &Option<[f64; 7]>| terms.map_or(f64::INFINITY, |t| t[0]);
+    judged.sort_by(|a, b| total(&a.1).total_cmp(&total(&b.1)));
+    let mut table = Table::new(std::iter::once("settings").chain(DISTANCE));
+    for (settings, terms) in judged {
+        let cells = (0..7).map(|n| fixed(terms.map(|t| t[n]), 3));
+        table.row(std::iter::once(settings).chain(cells));
+    }
+    print(&if format == Format::Table { table.text() } else { table.csv() })?;
+    Ok(exit)
 }
 
 /// Command and version, equal for every place where the command was typed.
