@@ -182,83 +182,44 @@ pub(crate) fn hint(words: &[String]) -> Option<String> {
 mod tests {
     use super::*;
 
-    /// Words of earlier versions: a command, its words that were removed, and a word of the advice.
-    const WORDS: &[(&str, &str, &str)] = &[
-        ("", "service", "ros2 service"),
-        ("service", "list type find", "ros2 service"),
-        ("service", "call", "ros2 service call"),
-        ("topic", "bw", "bandwidth"),
-        ("topic", "delay", "ros2 topic delay"),
-        ("topic", "type", "topic info"),
-        ("topic", "find", "ros2 topic find"),
-        ("topic list", "-v --verbose --show-types", "--types"),
-        ("topic list", "-c --count --count-topics --count-services --count-nodes", "wc -l"),
-        (
-            "topic list",
-            "-a --all --include-hidden --include-hidden-topics --include-hidden-services",
-            "ros2 topic list",
-        ),
-        ("topic info /x", "-v --verbose", "topic info"),
-        ("topic hz /x", "-w --window=100", "--duration"),
-        ("topic pub /x T --once", "--max-wait-time-secs", "timeout"),
-        ("topic pub /x T --once", "--keep-alive", "ros2 topic pub --keep-alive"),
-        ("topic pub /x T", "-p --print", "awk"),
-        ("topic pub /x T", "--qos-profile --qos-profile=sensor_data", "best_effort"),
-        ("topic echo /x", "--qos-profile --qos-profile=sensor_data", "best_effort"),
-        ("topic pub /x T", "--qos-history", "--qos-depth"),
-        ("topic echo /x", "--qos-history", "--qos-depth"),
-        ("topic pub /x T --qos-reliability", "system_default", "reliable"),
-        ("topic echo /x", "--qos-reliability=system_default --qos-durability=system_default", "volatile"),
-        ("node list", "-t -v --types --verbose --show-types", "node info"),
-        ("node list", "-c --count --count-topics --count-services --count-nodes", "wc -l"),
-        (
-            "node list",
-            "-a --all --include-hidden --include-hidden-topics --include-hidden-services",
-            "ros2 node list",
-        ),
-        ("param", "describe", "ros2 param describe"),
-        ("param", "dump", "ros2 param dump"),
-        ("param", "load", "ros2 param load"),
-        ("interface", "list package packages", "ros2 interface list"),
-        ("interface", "topics", "topic list --types"),
-        ("interface show T", "--no-comments", "sed"),
-        ("interface show T", "--all-comments", "ros2 interface show"),
-        ("bag export run --out x --format", "vtkhdf", "--format csv"),
-        ("bag export run --out x", "--format=vtkhdf", "--format vtk"),
-        ("bag", "add-schemas", "--msg-path"),
-        ("bag", "compress", "--compression"),
-        ("bag", "cut", "--start-offset"),
-        ("bag", "filter", "--topics"),
-        ("bag", "merge", "convert PATH PATH"),
-        ("bag convert x --format", "parquet", "to_parquet"),
-        ("bag convert x", "--format=parquet --explode", "pandas"),
-        ("bag convert x", "--preset --level", "zstd"),
-        ("bag convert x", "--chunk-size", "1 MiB"),
-        ("bag record -a", "--snapshot --trigger", "--start-offset"),
-        ("bag cut x --start 1", "--no-latched", "log time"),
-        ("help bag", "merge", "convert PATH PATH"),
-        ("bag help", "cut", "--start-offset"),
-        ("", "bench verify", "cargo run --release -p grainlab_"),
-        ("bench", "overview dem stiffness lockstep", "grainlab_bench"),
-        ("topic echo /x", "--no-daemon", "no daemon"),
-        ("doctor", "--no-daemon", "no daemon"),
-    ];
+    /// Lines with the words of a key: with each of its alternatives, and with a value as a word of its own.
+    fn lines(key: &str) -> Vec<String> {
+        let with = |lines: Vec<String>, part: &str| -> Vec<String> {
+            lines.iter().flat_map(|line| part.split('|').map(move |word| format!("{line} {word}"))).collect()
+        };
+        let lines = key.split(' ').fold(vec![String::new()], with);
+        lines.iter().flat_map(|line| [line.clone(), line.replace('=', " ")]).collect()
+    }
 
     #[test]
-    fn every_word_of_an_earlier_version_gets_advice_and_words_that_remain_get_none() {
+    fn every_word_of_a_key_gets_its_advice_wherever_it_stands_and_words_that_remain_get_none() {
         let hint = |line: &str| hint(&line.split_whitespace().map(str::to_owned).collect::<Vec<_>>());
-        for (command, removed, word) in WORDS {
-            for line in removed.split(' ').map(|removed| format!("{command} {removed}")) {
-                let advice = hint(&line).unwrap_or_else(|| panic!("{line}: no advice"));
-                assert!(advice.contains("was removed: ") && advice.contains(word), "{line}: {advice}");
+        for (key, advice) in REMOVED.iter().chain(ROS2) {
+            for line in lines(key) {
+                let found = hint(&line).unwrap_or_else(|| panic!("{line}: no advice"));
+                assert!(found.ends_with(&format!(": {advice}")), "{line}: {found}");
             }
+        }
+        for (line, start) in [
+            ("service find", "service was removed: "),
+            ("topic list -a", "topic list -a was removed: "),
+            ("topic info /x -v", "topic info -v was removed: "),
+            ("topic hz /x --window=100", "topic hz --window was removed: "),
+            ("bag export run --format vtkhdf --out x", "bag export --format=vtkhdf was removed: "),
+            ("bag cut x --start 1 --no-latched", "bag cut --no-latched was removed: "),
+            ("help bag merge", "bag merge was removed: "),
+            ("bag help cut", "bag cut was removed: "),
+            ("bench overview", "bench was removed: "),
+            ("doctor --no-daemon", "--no-daemon was removed: "),
+            ("action list", "instead of ros2 action: "),
+        ] {
+            let found = hint(line).unwrap_or_else(|| panic!("{line}: no advice"));
+            assert!(found.starts_with(start), "{line}: {found}");
         }
         for line in
             ["topic list -t", "topic echo /x --qos-reliability reliable", "param get /x y", "bag info x"]
         {
             assert_eq!(hint(line), None);
         }
-        assert!(hint("topic list -a").unwrap().starts_with("topic list -a was removed: "));
-        assert!(hint("action list").unwrap().starts_with("instead of ros2 action: "));
     }
 }

@@ -30,13 +30,13 @@ const READERS: [&str; 2] = ["grainlab_recordings", "grainlab_pictures"];
 /// Packages by name, each with the names of those it links and with its folder if it is in the workspace. Names of several
 /// versions are one.
 #[derive(Clone)]
-struct Graph {
-    links: BTreeMap<String, BTreeSet<String>>,
-    folders: BTreeMap<String, String>,
+pub(crate) struct Graph {
+    pub(crate) links: BTreeMap<String, BTreeSet<String>>,
+    pub(crate) folders: BTreeMap<String, String>,
 }
 
 impl Graph {
-    fn of_workspace() -> Self {
+    pub(crate) fn of_workspace() -> Self {
         let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../Cargo.toml");
         // One platform: otherwise crates of all systems count.
         let options = ["--locked", "--filter-platform", "x86_64-unknown-linux-gnu"].map(str::to_owned);

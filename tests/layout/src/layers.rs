@@ -1,7 +1,7 @@
 //! The order of crates: each one uses those of its own layer and of the layers below it only.
 
+use crate::dependencies::Graph;
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// The layer of each crate by its folder, 0 at the top, as the table `Layers` of nodes/README.md has them.
 fn layers(readme: &str) -> BTreeMap<String, usize> {
@@ -22,24 +22,17 @@ fn layer_of(folder: &str, layers: &BTreeMap<String, usize>) -> Option<usize> {
     layers.get(short).copied()
 }
 
-/// The uses that go from a lower layer to a higher one, among `members` with their manifests.
-fn upward(members: &[(String, String)], layers: &BTreeMap<String, usize>) -> Vec<String> {
-    let package = |manifest: &str| {
-        let name = manifest.split_once("name = \"").unwrap().1;
-        name.split_once('"').unwrap().0.to_owned()
-    };
-    let folders: BTreeMap<String, &String> = members.iter().map(|(f, m)| (package(m), f)).collect();
+/// The uses that go from a lower layer to a higher one.
+fn upward(graph: &Graph, layers: &BTreeMap<String, usize>) -> Vec<String> {
     let mut found = Vec::new();
-    for (folder, manifest) in members {
+    for (name, folder) in
+        graph.folders.iter().filter(|(_, folder)| !folder.starts_with("tests") && !folder.contains("vendor"))
+    {
         let Some(layer) = layer_of(folder, layers) else {
             found.push(format!("{folder} is in no layer of nodes/README.md"));
             continue;
         };
-        let used = manifest.split_once("\n[dependencies]").map_or("", |(_, rest)| rest);
-        let used = used.split("\n[").next().unwrap();
-        for line in used.lines() {
-            let name = line.split(['.', ' ', '=']).next().unwrap();
-            let Some(target) = folders.get(name) else { continue };
+        for target in graph.links[name].iter().filter_map(|used| graph.folders.get(used)) {
             if layer_of(target, layers).is_some_and(|below| below < layer) {
                 found.push(format!("{folder} uses {target}, which is in a layer above it"));
             }
@@ -50,32 +43,21 @@ fn upward(members: &[(String, String)], layers: &BTreeMap<String, usize>) -> Vec
 
 #[test]
 fn no_crate_uses_one_of_a_layer_above_it() {
-    let top = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let read = |path: &str| std::fs::read_to_string(top.join(path)).unwrap();
-    let manifest = read("Cargo.toml");
-    let members = manifest.split_once("members = [").unwrap().1.split_once(']').unwrap().0;
-    let members = members.split(',').map(|m| m.trim().trim_matches('"')).filter(|m| !m.is_empty());
-    let members: Vec<(String, String)> = members
-        .filter(|m| !m.starts_with("tests"))
-        .map(|m| (m.to_owned(), read(&format!("{m}/Cargo.toml"))))
-        .collect();
-    let faults = upward(&members, &layers(&read("nodes/README.md")));
+    let readme = concat!(env!("CARGO_MANIFEST_DIR"), "/../../nodes/README.md");
+    let layers = layers(&std::fs::read_to_string(readme).unwrap());
+    let faults = upward(&Graph::of_workspace(), &layers);
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
 
 #[test]
 fn a_kernel_that_uses_a_node_is_a_fault() {
     let readme = "| layer | crates | may use |\n|---|---|---|\n| nodes | `a` | all |\n| kernels | `kernels/*` | none |\n";
-    let manifest =
-        |name: &str, used: &str| format!("[package]\nname = \"{name}\"\n\n[dependencies]\n{used}\n");
-    let members = [
-        ("nodes/a".to_owned(), manifest("grainlab_a", "grainlab_b.workspace = true")),
-        ("nodes/kernels/b".to_owned(), manifest("grainlab_b", "grainlab_a.workspace = true")),
-        ("nodes/c".to_owned(), manifest("grainlab_c", "")),
-    ];
-    let found = upward(&members, &layers(readme));
+    let uses = [("a", "nodes/a", &["b"][..]), ("b", "nodes/kernels/b", &["a"]), ("c", "nodes/c", &[])];
+    let links = uses.map(|(name, _, used)| (name.to_owned(), used.iter().map(|u| (*u).to_owned()).collect()));
+    let folders = uses.map(|(name, folder, _)| (name.to_owned(), folder.to_owned()));
+    let graph = Graph { links: links.into(), folders: folders.into() };
     assert_eq!(
-        found,
+        upward(&graph, &layers(readme)),
         [
             "nodes/kernels/b uses nodes/a, which is in a layer above it",
             "nodes/c is in no layer of nodes/README.md"

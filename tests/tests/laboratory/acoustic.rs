@@ -1,6 +1,5 @@
 //! A run that measures its packings twice: by their contact network and by waves.
 
-use serde_json::Value;
 use std::path::{Path, PathBuf};
 use system_tests::bodies::distinct;
 use system_tests::lab::{Lab, appeared, number, scene_path, summary, undisturbed};
@@ -99,13 +98,9 @@ fn killing_the_probe_changes_no_byte() {
 }
 
 #[test]
-fn grainlab_probe_of_a_recording_gives_the_results_of_the_live_probe() {
+fn grainlab_probe_of_a_recording_gives_the_bytes_of_the_live_probe() {
     let (run, lab) = (run(), Lab::new());
-    let flags = ["--speed-noise", "0.003", "--format", "csv", "--record", "offline"];
-    let probed = lab.run(&[&["probe", &run.to_string_lossy()], &flags[..]].concat()).assert_code(0);
+    let flags = ["--speed-noise", "0.003", "--record", "offline"];
+    lab.run(&[&["probe", &run.to_string_lossy()], &flags[..]].concat()).assert_code(0);
     assert_eq!(distinct(&run, "/wave_speeds"), distinct(&lab.folder().join("offline"), "/wave_speeds"));
-    lab.write("probed.csv", &probed.stdout);
-    let judge = ["invert", "--table", "probed.csv", "--judge", "--model", "relaxed", "--format", "json"];
-    let scores: Value = lab.run(&judge).assert_code(0).json();
-    assert!(scores.to_string().contains("\"z\"") && scores.is_array(), "{scores}");
 }

@@ -1,7 +1,7 @@
 //! Invalid input of every kind: a clear message, the right exit code, no panic, no loss.
 
 use std::process::Command;
-use system_tests::lab::{Lab, golden, grainlab, scene_path, undisturbed};
+use system_tests::lab::{Lab, grainlab, scene_path, undisturbed};
 use system_tests::process::{Ended, Process};
 use system_tests::wait::{LIMIT, until};
 
@@ -10,52 +10,6 @@ fn refused(lab: &Lab, arguments: &[&str], code: i32, words: &[&str]) -> Ended {
     let ended = lab.run(arguments).assert_code(code).assert_says(words);
     assert!(!ended.stderr.contains("panicked"), "{}", ended.stderr);
     ended
-}
-
-#[test]
-fn faults_of_a_scene_end_with_exit_code_2() {
-    let lab = Lab::new();
-    let refused_scene = |from, to, words: &[&str]| {
-        lab.tiny_with("bad.toml", &[(from, to)]);
-        refused(&lab, &["launch", "--scene", "bad.toml"], 2, words);
-    };
-    let unknown = "name = \"rest\"\nfriktion = 0.1";
-    refused_scene("name = \"rest\"", unknown, &["friktion", "unknown key", "phase[1]"]);
-    refused_scene("friction = 10.0", "friction = -0.5", &["friction", "-0.5", "0 or more"]);
-    refused(&lab, &["launch", "--scene", "no-such-scene"], 2, &["no-such-scene", "demo"]);
-}
-
-#[test]
-fn unknown_parameters_and_commands_end_with_exit_code_2() {
-    let lab = Lab::new();
-    let unknown = ["run", "fabric_analyzer", "--ros-args", "-p", "tolerence:=1e-8"];
-    refused(&lab, &unknown, 2, &["tolerence", "tolerance"]);
-    refused(&lab, &["run", "no_such_node"], 2, &["no_such_node", "dem_simulator"]);
-    refused(&lab, &["invert", "--g12", "1e8"], 2, &["--pressure"]);
-    refused(&lab, &["analyse-this"], 2, &[]);
-    let reference = golden("reference/ref_packing_500.csv.gz");
-    let reference = reference.to_string_lossy();
-    for flag in [
-        "--shear-modulus=0",
-        "--shear-modulus=NaN",
-        "--poisson=0.9",
-        "--density=-1",
-        "--friction=-0.5",
-        "--amplitude=0",
-        "--amplitude=0.1",
-    ] {
-        let name = flag.split('=').next().unwrap_or(flag);
-        refused(&lab, &["analyze", &reference, flag], 2, &[name, "out of range"]);
-    }
-}
-
-#[test]
-fn missing_and_foreign_files_end_with_exit_code_1() {
-    let lab = Lab::new();
-    refused(&lab, &["analyze", "nowhere.mcap"], 1, &["nowhere.mcap"]);
-    refused(&lab, &["bag", "info", "nowhere"], 1, &["nowhere"]);
-    lab.write("text.mcap", "not a recording");
-    refused(&lab, &["bag", "info", "text.mcap"], 1, &["text.mcap"]);
 }
 
 #[test]

@@ -6,9 +6,7 @@ mod measure;
 
 use super::packings::files;
 use super::packings::import::{self, in_range};
-use super::packings::writer::ResultWriter;
-use crate::offline_recording::OfflineRecording;
-use grainlab_console::{Failure, Format, print};
+use grainlab_console::{Failure, print};
 use grainlab_core::Vec3;
 use grainlab_core::results::QUANTITIES;
 use grainlab_micromechanics::TOLERANCES;
@@ -17,10 +15,8 @@ use grainlab_micromechanics::probe::StrainProbe;
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
 use grainlab_recordings::import::yade;
-use grainlab_results::Printer;
 use grainlab_results::quantities::help;
 pub(crate) use measure::measure;
-use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -45,18 +41,11 @@ Examples:
     allow_negative_numbers = true
 )]
 pub(crate) struct Args {
-    /// Recordings (directory or .mcap), CSV with its JSON sidecar, LAMMPS dump or data files, YADE text exports; text also
-    /// as .gz
-    #[arg(required_unless_present = "yade_script", value_name = "FILE")]
-    files: Vec<PathBuf>,
-    /// Also record the PackingReport messages that the node fabric_analyzer would publish, into this new directory
-    #[arg(long, value_name = "DIR")]
-    record: Option<PathBuf>,
+    #[command(flatten)]
+    packings: files::Args,
     /// Print a script for YADE that exports a packing with its contacts and forces
     #[arg(long, exclusive = true)]
     yade_script: bool,
-    #[command(flatten)]
-    import: import::Args,
     /// Axis of eps, of the ratios gamma/Delta, of G12, G13 and the ti_ moduli; the 36 entries of a stiffness stay in the
     /// frame of the cell
     #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', num_args = 1, default_value = "0,0,1")]
@@ -76,12 +65,6 @@ pub(crate) struct Args {
     /// Strain of --method probe, forward and backward; far below overlap/diameter [default: 1e-7]
     #[arg(long, value_name = "STRAIN")]
     amplitude: Option<f64>,
-    /// Format of the result
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
-    /// Columns of --format csv, in this order [default: all]
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
-    columns: Vec<String>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -112,15 +95,10 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         print(yade::EXPORTER)?;
         return Ok(Exit::Done);
     }
-    let options = args.import.options()?;
     let settings = settings(args)?;
     args.without_effect()?;
-    let printer = Printer::new(args.format, args.columns.clone())?;
-    let recorded = [topics::PACKING_REPORT];
-    let create = |at: &PathBuf| OfflineRecording::create(at, &recorded, "analyze");
-    let recording = args.record.as_ref().map(create).transpose()?;
     let measure = |source: &str, imported: &_| measure(&settings, source, imported);
-    files::run(&args.files, &options, measure, ResultWriter::new(printer, recording))
+    args.packings.measured("analyze", &[topics::PACKING_REPORT], measure)
 }
 
 impl Args {
@@ -135,7 +113,7 @@ impl Args {
                 return Err(Failure::usage(format!("{flag} has no effect without {needs}")));
             }
         }
-        self.import.topic_has_use(&self.files)
+        Ok(())
     }
 }
 

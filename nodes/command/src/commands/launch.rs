@@ -14,19 +14,16 @@ use std::path::{Path, PathBuf};
 
 mod conduct;
 mod directory;
-mod engine;
 mod finish;
 mod order;
-mod output;
 mod resume;
 
 use conduct::{conduct, medium};
 use directory::Given;
 #[cfg(feature = "studio")]
 pub(crate) use directory::another_scene;
-use engine::EngineOptions;
-use order::{Order, Record};
-use output::Output;
+use finish::Output;
+use order::{EngineOptions, Order, Record};
 
 const EXAMPLES: &str = "\
 Examples:

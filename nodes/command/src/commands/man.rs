@@ -21,24 +21,3 @@ pub(crate) fn run(args: &Args, command: clap::Command) -> Result<Exit, Failure> 
     say!("grainlab: the pages are in {}", args.folder.display());
     Ok(Exit::Done)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use clap::Command;
-
-    #[test]
-    fn every_command_and_sub_command_has_a_page_of_its_name() {
-        let folder = tempfile::tempdir().unwrap();
-        let args = Args { folder: folder.path().join("man1") };
-        let play = Command::new("play").about("Publish a recording");
-        let bag = Command::new("bag").subcommand(play).subcommand_required(true);
-        run(&args, Command::new("grainlab").subcommand(bag)).unwrap();
-        let mut pages: Vec<_> =
-            std::fs::read_dir(&args.folder).unwrap().map(|f| f.unwrap().file_name()).collect();
-        pages.sort_unstable();
-        assert_eq!(pages, ["grainlab-bag-play.1", "grainlab-bag.1", "grainlab.1"]);
-        let text = std::fs::read_to_string(args.folder.join("grainlab-bag-play.1")).unwrap();
-        assert!(text.contains("Publish a recording"), "{text}");
-    }
-}

@@ -1,11 +1,11 @@
 //! Packings from files through a measurement to a printed result: the common part of `analyze` and `probe`.
 //!
 //! - [`import`]: flags for data that files lack
-//! - [`files`]: many files at once; [`writer`]: their results, in order
+//! - [`files`]: flags, and many files at once; [`writer`]: their results, in order
 
 pub(crate) mod files;
 pub(crate) mod import;
-pub(crate) mod writer;
+mod writer;
 
 use crate::offline_recording::Recorded;
 

@@ -5,17 +5,14 @@
 mod flags;
 mod measure;
 
-use super::packings::writer::ResultWriter;
 use super::packings::{files, import};
-use crate::offline_recording::OfflineRecording;
 use flags::Flags;
-use grainlab_console::{Failure, Format};
+use grainlab_console::Failure;
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
+use grainlab_results::ACOUSTIC;
 use grainlab_results::quantities::help;
-use grainlab_results::{ACOUSTIC, Printer};
 pub(crate) use measure::measure;
-use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -36,21 +33,8 @@ Examples:
     allow_negative_numbers = true
 )]
 pub(crate) struct Args {
-    /// Recordings (directory or .mcap), CSV with its JSON sidecar, LAMMPS dump or data files, YADE text exports; text also
-    /// as .gz
-    #[arg(required = true, value_name = "FILE")]
-    files: Vec<PathBuf>,
     #[command(flatten)]
-    import: import::Args,
-    /// Also record the WaveSpeeds and Waveform messages that the node acoustic_probe would publish, into this new directory
-    #[arg(long, value_name = "DIR")]
-    record: Option<PathBuf>,
-    /// Format of the result
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
-    /// Columns of --format csv, in this order [default: all]
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
-    columns: Vec<String>,
+    packings: files::Args,
     #[command(flatten)]
     flags: Flags,
 }
@@ -61,13 +45,7 @@ pub(crate) fn settings(given: &[(String, String)]) -> Result<grainlab_acoustic_p
 }
 
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    args.import.topic_has_use(&args.files)?;
-    let options = args.import.options()?;
     let settings = args.flags.settings()?;
-    let printer = Printer::new(args.format, args.columns.clone())?;
-    let recorded = [topics::WAVE_SPEEDS, topics::WAVEFORM];
-    let create = |at: &PathBuf| OfflineRecording::create(at, &recorded, "probe");
-    let recording = args.record.as_ref().map(create).transpose()?;
     let measure = |source: &str, imported: &_| measure(&settings, source, imported);
-    files::run(&args.files, &options, measure, ResultWriter::new(printer, recording))
+    args.packings.measured("probe", &[topics::WAVE_SPEEDS, topics::WAVEFORM], measure)
 }

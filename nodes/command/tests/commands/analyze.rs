@@ -50,9 +50,20 @@ fn missing_properties_of_a_file_are_listed_and_the_exit_code_is_that_of_usage() 
 }
 
 #[test]
-fn negative_numbers_reach_the_flags_that_refuse_them() {
-    for (flag, value) in [("--friction", "-1"), ("--shear-modulus", "-2e9"), ("--tolerance", "-0.5")] {
-        analyze(&["x.csv", flag, value]).assert_code(2).assert_says(&[flag, "out of range"]);
+fn numbers_out_of_range_are_refused_by_the_name_of_their_flag() {
+    for (flag, values) in [
+        ("--friction", &["-1"][..]),
+        ("--shear-modulus", &["-2e9", "0", "NaN"]),
+        ("--poisson", &["0.9"]),
+        ("--density", &["-1"]),
+        ("--tolerance", &["-0.5"]),
+        ("--amplitude", &["0", "0.1"]),
+    ] {
+        for value in values {
+            let method = if flag == "--amplitude" { "probe" } else { "network" };
+            let ended = analyze(&["x.csv", flag, value, "--method", method]);
+            ended.assert_code(2).assert_says(&[flag, "out of range"]);
+        }
     }
 }
 

@@ -128,69 +128,36 @@ fn a_record_that_ends_soon_after_the_pick_is_noted_and_the_note_goes_with_the_sp
 #[test]
 fn a_fault_is_named_with_its_file_and_line_and_a_refused_record_keeps_the_others() {
     let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
     records(folder.path());
-    let table = |text: &str| std::fs::write(folder.path().join("t.csv"), text).unwrap();
-    let refused = |code: i32, words: &[&str]| {
+    file(folder.path(), "silent.csv", 1.0, |t, s, r| format!("{t:e},{s},{r}"));
+    let text = std::fs::read_to_string(path("p.csv")).unwrap();
+    let wide = text.encode_utf16().flat_map(u16::to_le_bytes);
+    std::fs::write(path("wide.csv"), [0xff, 0xfe].into_iter().chain(wide).collect::<Vec<u8>>()).unwrap();
+    let channels = |row: &str| format!("file,mode,distance,diameter,source_column,receiver_column\n{row}\n");
+    let plain = |rows: &str| format!("file,distance,diameter\n{rows}\n");
+    for (table, code, words) in [
+        ("file,distance\np.csv,0.1\n".into(), 2, &["no column diameter; columns are file, distance"][..]),
+        ("file,distance,diameter,distence_sigma\n".into(), 2, &["did you mean distance_sigma?"]),
+        (plain("p.csv,ten,1e-4"), 2, &["t.csv", "line 2", "column distance: \"ten\" is not a number"]),
+        (channels("p.csv,P-wave,0.1,1e-4,2,3"), 2, &["mode is \"P-wave\"; it must be one of p, s, sv, sh"]),
+        (plain("p.csv,-0.1,1e-4"), 2, &["line 2: distance is -0.1", "5 diameters or more"]),
+        (channels("p.csv,p,0.1,1e-4,2,7"), 2, &["p.csv", "no lines of numbers in the columns 1, 2 and 7"]),
+        (plain("silent.csv,0.1,1e-4\np.csv,0.1,1e-4"), 4, &["no arrival: ", ": silent.csv", "p.csv"]),
+        (plain("silent.csv,0.1,1e-4\np.csv,0.1,1e-4"), 4, &["1 of 2 records have no speed"]),
+        (plain("none.csv,0.1,1e-4\np.csv,0.1,1e-4"), 2, &["(os error 2): none.csv", "cross_correlation *"]),
+        (plain("none.csv,0.1,1e-4\np.csv,0.1,1e-4"), 2, &["1 of 2 records could not be read"]),
+        (plain("/dev/null,0.1,1e-4"), 2, &["it is a device"]),
+        (channels("p.csv,p,0.1,1e-4,2,2"), 4, &["source and receiver are the same signal"]),
+        (channels("p.csv,p,0.1,1e-4,3,2"), 4, &["the receiver has the wave before the source has it"]),
+        (channels("wide.csv,p,0.1,1e-4,2,3"), 2, &["it is UTF-16 text: save it as UTF-8"]),
+    ] {
+        std::fs::write(path("t.csv"), &table).unwrap();
         let out = grainlab_in(folder.path(), &["pick", "t.csv"]);
         let text = format!("{}{}", out.stdout, out.stderr);
-        assert_eq!(out.code, Some(code), "{text}");
-        words.iter().for_each(|word| assert!(text.contains(word), "{word}: {text}"));
-    };
-    table("file,distance\np.csv,0.1\n");
-    refused(2, &["t.csv", "no column diameter; columns are file, distance"]);
-    table("file,distance,diameter,distence_sigma\n");
-    refused(2, &["column distence_sigma is unknown (did you mean distance_sigma?)"]);
-    table("file,distance,diameter\np.csv,ten,1e-4\n");
-    refused(2, &["line 2", "column distance: \"ten\" is not a number"]);
-    table("file,mode,distance,diameter\np.csv,P-wave,0.1,1e-4\n");
-    refused(2, &["line 2", "mode is \"P-wave\"; it must be one of p, s, sv, sh"]);
-    table("file,distance,diameter\np.csv,-0.1,1e-4\n");
-    refused(2, &["line 2: distance is -0.1", "5 diameters or more"]);
-    table("file,distance,diameter,receiver_column\np.csv,0.1,1e-4,7\n");
-    refused(2, &["p.csv", "no lines of numbers in the columns 1, 2 and 7"]);
-    file(folder.path(), "silent.csv", 1.0, |t, s, r| format!("{t:e},{s},{r}"));
-    table("file,distance,diameter\nsilent.csv,0.1,1e-4\np.csv,0.1,1e-4\n");
-    refused(4, &["no arrival: ", ": silent.csv", "p.csv", "1 of 2 records have no speed"]);
-    table("file,distance,diameter\nnone.csv,0.1,1e-4\np.csv,0.1,1e-4\n");
-    refused(
-        2,
-        &[
-            "No such file or directory (os error 2): none.csv",
-            "cross_correlation *",
-            "1 of 2 records could not be read",
-        ],
-    );
-}
-
-#[test]
-fn one_channel_for_both_exchanged_channels_and_utf16_are_named() {
-    let folder = tempfile::tempdir().unwrap();
-    records(folder.path());
-    let text = std::fs::read_to_string(folder.path().join("p.csv")).unwrap();
-    let wide = text.encode_utf16().flat_map(u16::to_le_bytes);
-    std::fs::write(folder.path().join("wide.csv"), [0xff, 0xfe].into_iter().chain(wide).collect::<Vec<u8>>())
-        .unwrap();
-    for (row, code, fault) in [
-        ("p.csv,p,0.1,1e-4,2,2", 4, "source and receiver are the same signal"),
-        ("p.csv,p,0.1,1e-4,3,2", 4, "the receiver has the wave before the source has it"),
-        ("wide.csv,p,0.1,1e-4,2,3", 2, "it is UTF-16 text: save it as UTF-8"),
-    ] {
-        let table = format!("file,mode,distance,diameter,source_column,receiver_column\n{row}\n");
-        std::fs::write(folder.path().join("t.csv"), table).unwrap();
-        let out = grainlab_in(folder.path(), &["pick", "t.csv"]);
-        let said = format!("{}{}", out.stdout, out.stderr);
-        assert_eq!(out.code, Some(code), "{said}");
-        assert!(said.contains(fault), "{said}");
+        assert_eq!(out.code, Some(code), "{table}{text}");
+        words.iter().for_each(|word| assert!(text.contains(word), "{word}: {table}{text}"));
     }
-}
-
-#[test]
-fn a_record_that_may_be_endless_is_refused_before_it_is_read() {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("t.csv"), "file,distance,diameter\n/dev/null,0.1,1e-4\n").unwrap();
-    let out = grainlab_in(folder.path(), &["pick", "t.csv"]);
-    let text = format!("{}{}", out.stdout, out.stderr);
-    assert!(text.contains("it is a device"), "{text}");
 }
 
 /// Two strong waves, the later of which comes when S may: the earlier one may be P.

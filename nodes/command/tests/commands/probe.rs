@@ -102,7 +102,10 @@ fn everything_in_one_answer_is_about_the_axis_asked_for_which_it_names() {
 #[test]
 fn invalid_flags_are_refused_by_name() {
     for (flags, word) in [
-        (["--speed-noise", "2"], "speed_noise"),
+        (["--speed-noise", "2"], "\"speed_noise\" = 2"),
+        (["--method", "ear"], "\"method\""),
+        (["--wavelengths", "60,80"], "\"wavelengths\" has 2"),
+        (["--shots", "many"], "\"shots\""),
         (["--axis", "up"], "axis"),
         (["--columns", "nonsense"], "--columns"),
         (["--frequencies", "-1"], "frequencies"),

@@ -43,6 +43,7 @@ fn wrong_usage_ends_with_exit_code_2_and_names_what_is_wrong() {
         (&["service", "list"], "all else: ros2 service"),
         (&["run", "dem_simulator", "scene:=demo"], "scene:=demo"),
         (&["run", "dem_simulator", "--ros-args", "-p", "scene"], "\"scene\""),
+        (&["run", "fabric_analyzer", "--ros-args", "-p", "tolerence:=1e-8"], "tolerance"),
         (&["launch", "--scene", "no-such-scene"], "demo, s1"),
         (&["launch", "--seed", "-3"], "-3"),
         (&["launch", "--set", "grains.cuont=500"], "grains.cuont: unknown key (did you mean count?)"),

@@ -29,6 +29,7 @@ pub mod yade;
 
 pub use error::{ImportError, Setting};
 pub use imported::Imported;
+pub(crate) use load::instead_of_hdf5;
 pub use load::{Loaded, each, load, text};
 pub use rounding::Rounding;
 pub use settings::{Frames, ImportOptions};

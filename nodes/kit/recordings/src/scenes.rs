@@ -1,6 +1,6 @@
 //! Scenes by name or path, with their bases and overrides.
 
-use crate::import::start;
+use crate::import::{instead_of_hdf5, start};
 use grainlab_console::Failure;
 use grainlab_console::input;
 use grainlab_core::Packing;
@@ -89,6 +89,9 @@ fn find(name: &str, from: Option<&Path>) -> Result<Source, Failure> {
         let message = format!("no scene {name:?}: neither a file nor built in; built in are: {known}");
         return Err(Failure::usage(message));
     }
+    if let Some(instead) = instead_of_hdf5(&path) {
+        return Err(Failure::usage(format!("{name} is no scene: {instead}")));
+    }
     let text = input::text(&path, input::SETTINGS).map_err(Failure::failed)?;
     // The whole path identifies a file, also if it is reached in two ways.
     let name = path.canonicalize().unwrap_or(path);
@@ -155,6 +158,19 @@ mod tests {
             failure.contains("mine.toml: start.packing: ") && failure.contains("nothing.csv"),
             "{failure}"
         );
+    }
+
+    #[test]
+    fn hdf5_as_a_scene_or_as_its_start_is_wrong_usage_with_what_to_use_instead() {
+        let folder = tempfile::tempdir().unwrap();
+        let [hdf5, scene] = ["packing.vtkhdf", "mine.toml"].map(|name| folder.path().join(name));
+        std::fs::write(&hdf5, b"\x89HDF\r\n\x1a\n").unwrap();
+        std::fs::write(&scene, "base = 's2'\nname = 'mine'\nstart.packing = 'packing.vtkhdf'").unwrap();
+        for path in [hdf5, scene] {
+            let failure = load(&path.to_string_lossy(), &[], None).unwrap_err();
+            assert_eq!(failure.exit, Exit::Usage, "{failure}");
+            assert!(failure.to_string().contains("--format csv"), "{failure}");
+        }
     }
 
     #[test]

@@ -13,7 +13,7 @@ use grainlab_console::input;
 use scope::Scope;
 use std::collections::BTreeMap;
 use std::path::Path;
-use words::{ADVICE, OF_ROS2};
+use words::{ADVICE, LONGEST, OF_ROS2};
 
 /// The built-in launch files; the first one is the default.
 pub const BUILT_IN: [(&str, &str); 2] = [
@@ -115,6 +115,9 @@ impl LaunchFile {
             }
             let declared = format!("the launch file declares no arg {name:?}; declared are: {}", known());
             return Err(PlanError(declared));
+        }
+        if let Some((name, _)) = values.iter().find(|(_, value)| value.len() > LONGEST) {
+            return Err(PlanError(format!("the value of the arg {name:?} has more than {LONGEST} bytes")));
         }
         let variables = values.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect();
         let mut nodes = Vec::new();

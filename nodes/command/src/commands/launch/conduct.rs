@@ -1,8 +1,7 @@
 //! A launch from the first process to the report.
 
-use super::finish::finish;
+use super::finish::{Output, finish};
 use super::order;
-use super::output::Output;
 use crate::commands::scene::notes_on;
 use grainlab_console::Failure;
 use grainlab_launcher::{NodePlan, Outline, RecordedSpeeds, Run, Supervised, Supervisor, run_in_one_process};

@@ -1,6 +1,5 @@
 //! The result of a run, read back from its recording.
 
-use super::output::Output;
 use grainlab_console::{Failure, Format, called, json, print, replace_whole, worse};
 use grainlab_launcher::NodeKind;
 use grainlab_launcher::{Received, Supervised};
@@ -14,6 +13,19 @@ use grainlab_results::{Launched, MeasuredPacking, NodeEnd, Printed, Summary};
 use grainlab_results::{brief, summary_text};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+
+/// Form of the result.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Output {
+    pub(super) format: Format,
+    /// Print everything before the summary.
+    pub(super) verbose: bool,
+    /// The run is continued: its times are those of the last part.
+    pub(super) resumed: bool,
+    /// Write the page of the run.
+    #[cfg_attr(not(feature = "studio"), expect(dead_code, reason = "the studio writes pages"))]
+    pub(super) report: bool,
+}
 
 /// Published results that the recording lacks.
 fn missing(received: &Received, back: &ReadBack) -> Vec<String> {

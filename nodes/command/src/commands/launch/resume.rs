@@ -5,9 +5,8 @@
 //! repeat with the same bytes are not recorded again.
 
 use super::conduct::{conduct, medium};
-use super::engine::EngineOptions;
-use super::order::Order;
-use super::output::Output;
+use super::finish::Output;
+use super::order::{EngineOptions, Order};
 use grainlab_console::Failure;
 use grainlab_launcher::NodeKind;
 use grainlab_launcher::last_packing;

@@ -1,12 +1,14 @@
 //! Many files at once, with a few packings of them in memory.
 
-use super::Found;
 use super::writer::ResultWriter;
-use grainlab_console::{Failure, Signals, count, worse};
+use super::{Found, import};
+use crate::offline_recording::OfflineRecording;
+use grainlab_console::{Failure, Format, Signals, count, worse};
+use grainlab_msgs::Topic;
 use grainlab_node_kit::Exit;
 use grainlab_recordings::Recording;
 use grainlab_recordings::import::{ImportOptions, Imported, each};
-use grainlab_results::Printed;
+use grainlab_results::{Printed, Printer};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -25,9 +27,47 @@ enum Event<R> {
     FileRead(Vec<String>, Exit),
 }
 
+/// Files to measure, data that they lack, and the form of the results.
+#[derive(Debug, clap::Args)]
+#[group(skip)]
+pub(crate) struct Args {
+    /// Recordings (directory or .mcap), CSV with its JSON sidecar, LAMMPS dump or data files, YADE text exports; text also
+    /// as .gz
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    #[command(flatten)]
+    import: import::Args,
+    /// Also record the messages that the node of this measurement would publish, into this new directory
+    #[arg(long, value_name = "DIR")]
+    record: Option<PathBuf>,
+    /// Format of the result
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+    /// Columns of --format csv, in this order [default: all]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    columns: Vec<String>,
+}
+
+impl Args {
+    /// Measures every packing of the files for `grainlab COMMAND`, whose node publishes these topics.
+    pub(crate) fn measured<R: Printed + Send>(
+        &self,
+        command: &'static str,
+        topics: &[Topic],
+        measure: impl Fn(&str, &Imported) -> Result<Found<R>, String> + Sync,
+    ) -> Result<Exit, Failure> {
+        self.import.topic_has_use(&self.files)?;
+        let options = self.import.options()?;
+        let printer = Printer::new(self.format, self.columns.clone())?;
+        let create = |at: &PathBuf| OfflineRecording::create(at, topics, command);
+        let recording = self.record.as_ref().map(create).transpose()?;
+        run(&self.files, &options, measure, ResultWriter::new(printer, recording))
+    }
+}
+
 /// Measures every packing of every file on all cores, while the next ones are read. At most two packings a core wait for their
 /// turn, which limits the memory.
-pub(crate) fn run<R: Printed + Send>(
+fn run<R: Printed + Send>(
     files: &[PathBuf],
     options: &ImportOptions,
     measure: impl Fn(&str, &Imported) -> Result<Found<R>, String> + Sync,

@@ -181,17 +181,4 @@ mod tests {
         assert!(with("-0.5").unwrap_err().contains("wave_friction"));
         assert!(with("-1").is_ok() && with("0").is_ok());
     }
-
-    #[test]
-    fn a_value_out_of_range_is_named() {
-        for (words, part) in [
-            (["--speed-noise", "2"], "\"speed_noise\" = 2"),
-            (["--method", "ear"], "\"method\""),
-            (["--wavelengths", "60,80"], "\"wavelengths\" has 2"),
-            (["--shots", "many"], "\"shots\""),
-        ] {
-            let error = settings(&words).unwrap_err();
-            assert!(error.contains(part) && !error.starts_with("-p"), "{error}");
-        }
-    }
 }

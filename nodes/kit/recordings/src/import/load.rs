@@ -68,8 +68,8 @@ pub fn each(
         })?;
         return Ok(recording.warnings());
     }
-    if starts_with(path, HDF5) {
-        return Err(inside(ImportError::Given(INSTEAD_OF_HDF5.to_owned())));
+    if let Some(instead) = instead_of_hdf5(path) {
+        return Err(inside(ImportError::Given(instead.to_owned())));
     }
     let text = text(path)?;
     match format(&extension, &stem, &text).map_err(inside)? {
@@ -88,6 +88,11 @@ pub fn each(
     }
     .map_err(inside)?;
     Ok(Vec::new())
+}
+
+/// Returns what to use instead of an HDF5 file; `None` for any other file.
+pub(crate) fn instead_of_hdf5(path: &Path) -> Option<&'static str> {
+    starts_with(path, HDF5).then_some(INSTEAD_OF_HDF5)
 }
 
 /// Stem and extension of the name without `.gz`.

@@ -37,7 +37,12 @@ pub fn start(draft: &Draft, file: &grainlab_scene::Start) -> Result<Start, Failu
     let path = whole(draft, "packing", &file.packing)?;
     let contact_forces = file.contact_forces.as_ref().map(|forces| whole(draft, "contact_forces", forces));
     let contact_forces = contact_forces.transpose()?;
-    let failed = |key| move |error: ImportError| Failure::failed(format!("start.{key}: {error}"));
+    let failed = |key| {
+        move |error: ImportError| {
+            let failure = error.failure();
+            Failure::new(failure.exit, format!("start.{key}: {failure}"))
+        }
+    };
     let given = ImportOptions {
         contact_forces: contact_forces.as_deref().map(text).transpose().map_err(failed("contact_forces"))?,
         contact_columns: file.contact_columns.clone(),

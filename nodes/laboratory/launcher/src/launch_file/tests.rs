@@ -112,6 +112,10 @@ fn values_that_repeat_themselves_are_refused_before_they_fill_the_memory() {
     let long = "x".repeat(5_000);
     let file = format!("launch:\n- let: {{name: a, value: {long}}}\n- let: {{name: b, value: $(var a)}}\n");
     assert!(nodes(&file, &[]).unwrap_err().to_string().contains("more than 4096 bytes"));
+    // A value that is given is refused also where nothing uses it.
+    let error =
+        nodes("launch:\n- arg: {name: a, default: x}\n", &[("a", long.as_str())]).unwrap_err().to_string();
+    assert_eq!(error, "the value of the arg \"a\" has more than 4096 bytes");
 }
 
 #[test]

@@ -68,8 +68,8 @@ pub(super) fn words(cmd: &str) -> Option<Vec<String>> {
     quote.is_none().then_some(words)
 }
 
-/// Maximum length of a text with its values, bytes. A `let` that repeats its own value doubles it each time.
-const LONGEST: usize = 4096;
+/// Maximum length of a value and of a text with its values, bytes. A `let` that repeats its own value doubles it each time.
+pub(super) const LONGEST: usize = 4096;
 
 /// Substitutes the values of variables. A value is never split.
 pub(super) fn substitute(
