@@ -7,7 +7,7 @@
 use super::decomposition::Subdomain;
 use crate::simd::instruction_set::Simd;
 use crate::simd::kernel::Kernel;
-use crate::simd::simd_f64::{CHUNK_SIZE, F64x8, SimdF64};
+use crate::simd::simd_f64::{CHUNK_SIZE, F64x8, SimdF64, SimdRow};
 use std::ops::Range;
 
 /// Forces and torques on the grains of one subdomain.
@@ -88,7 +88,8 @@ impl PartAccumulator<'_> {
     fn add_remote(&mut self, c: usize) {
         let extra = self.remote_extra_start[c] as usize..self.remote_extra_start[c + 1] as usize;
         for &(to, from) in &self.remote_extra[extra] {
-            self.rows[to as usize] = self.rows[to as usize].plus(&self.rows[from as usize]);
+            let from = self.rows[from as usize].0;
+            self.rows[to as usize].0.iter_mut().zip(from).for_each(|(to, from)| *to += from);
         }
     }
 
@@ -131,7 +132,7 @@ impl ForceAccumulator {
 /// The forces on the grains of a chunk.
 pub(crate) trait ChunkForces {
     /// Force and torque on grain `k` of the chunk. Each grain is asked for once.
-    fn on(&mut self, k: usize) -> F64x8;
+    fn on<R: SimdRow>(&mut self, k: usize) -> [R; 2];
 }
 
 /// The sums over earlier parts, for the grains of a chunk.
@@ -145,8 +146,9 @@ struct RemoteSums<'a> {
 
 impl RemoteSums<'_> {
     #[inline(always)]
-    fn of(&self, k: usize) -> &F64x8 {
-        &self.rows[self.index[k] as usize - self.zero]
+    fn add<R: SimdRow>(&self, k: usize, [force, torque]: [R; 2]) -> [R; 2] {
+        let row = &self.rows[self.index[k] as usize - self.zero].0;
+        [force.add(R::load(row, 0)), torque.add(R::load(row, 4))]
     }
 }
 
@@ -159,8 +161,8 @@ pub(crate) struct TakenForces<'a> {
 
 impl ChunkForces for TakenForces<'_> {
     #[inline(always)]
-    fn on(&mut self, k: usize) -> F64x8 {
-        take_sum(&mut self.chunk[k], &mut self.part[k]).plus(self.remote.of(k))
+    fn on<R: SimdRow>(&mut self, k: usize) -> [R; 2] {
+        self.remote.add(k, take_sum(&mut self.chunk[k].0, &mut self.part[k].0))
     }
 }
 
@@ -173,15 +175,21 @@ pub(crate) struct StoredForces<'a> {
 
 impl ChunkForces for StoredForces<'_> {
     #[inline(always)]
-    fn on(&mut self, k: usize) -> F64x8 {
-        self.stored[k].plus(self.remote.of(k))
+    fn on<R: SimdRow>(&mut self, k: usize) -> [R; 2] {
+        let row = &self.stored[k].0;
+        self.remote.add(k, [R::load(row, 0), R::load(row, 4)])
     }
 }
 
 /// The sum of two rows, which are left zero.
 #[inline(always)]
-fn take_sum(chunk: &mut F64x8, part: &mut F64x8) -> F64x8 {
-    std::mem::take(chunk).plus(&std::mem::take(part))
+fn take_sum<R: SimdRow>(chunk: &mut [f64; 8], part: &mut [f64; 8]) -> [R; 2] {
+    let sum = [R::load(chunk, 0).add(R::load(part, 0)), R::load(chunk, 4).add(R::load(part, 4))];
+    for at in [0, 4] {
+        R::splat(0.0).store(chunk, at);
+        R::splat(0.0).store(part, at);
+    }
+    sum
 }
 
 struct StoreChunk<'a> {
@@ -196,7 +204,9 @@ impl Kernel for StoreChunk<'_> {
     #[inline(always)]
     fn run<L: SimdF64>(self) {
         for ((chunk, part), stored) in self.chunk.iter_mut().zip(self.part).zip(self.stored) {
-            *stored = take_sum(chunk, part);
+            let [force, torque] = take_sum::<L::Row>(&mut chunk.0, &mut part.0);
+            force.store(&mut stored.0, 0);
+            torque.store(&mut stored.0, 4);
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::domain::accumulator::ChunkForces;
 use crate::pairs::types::PeriodicPair;
 use crate::simd::instruction_set::Simd;
 use crate::simd::kernel::Kernel;
-use crate::simd::simd_f64::{BLOCK_SIZE, F64x4, F64x8, SimdF64};
+use crate::simd::simd_f64::{BLOCK_SIZE, F64x4, SimdF64, SimdRow};
 use grainlab_core::{Mat3, SymTensor};
 
 /// Σ f ⊗ l, J: three rows, one per component of the force.
@@ -78,10 +78,18 @@ impl<F: ChunkForces> Kernel for ChunkVirial<'_, F> {
     #[inline(always)]
     fn run<L: SimdF64>(self) -> Virial {
         let mut forces = self.forces;
-        let mut virial = Virial::default();
+        let mut rows = [L::Row::splat(0.0); 3];
         for (k, x) in self.position.iter().enumerate() {
-            let F64x8([x_force, y_force, z_force, ..]) = forces.on(k);
-            virial.add_dyad([x_force, y_force, z_force], x);
+            let [force, _] = forces.on::<L::Row>(k);
+            let (mut f, x) = ([0.0; 4], L::Row::load(x, 0));
+            force.store(&mut f, 0);
+            for (sum, f) in rows.iter_mut().zip(f) {
+                *sum = L::Row::splat(f).mul_add(x, *sum);
+            }
+        }
+        let mut virial = Virial::default();
+        for (row, sum) in virial.rows.iter_mut().zip(rows) {
+            sum.store(row, 0);
         }
         virial
     }

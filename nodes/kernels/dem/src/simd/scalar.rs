@@ -1,10 +1,50 @@
 //! One lane, on any processor: the reference that the other widths agree with bit for bit.
 
-use super::simd_f64::{BLOCK_SIZE, CHUNK_SIZE, CheckedIndices, F64x4, F64x8, SimdF64};
-use grainlab_core::lanes::LaneVec3;
+use super::simd_f64::{BLOCK_SIZE, CHUNK_SIZE, CheckedIndices, F64x4, F64x8, SimdF64, SimdRow};
+use grainlab_core::lanes::{LaneVec3, Lanes};
+
+impl SimdRow for F64x4 {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        [value; 4]
+    }
+    #[inline(always)]
+    fn load<const N: usize>(from: &[f64; N], at: usize) -> Self {
+        [from[at], from[at + 1], from[at + 2], from[at + 3]]
+    }
+    #[inline(always)]
+    fn store<const N: usize>(self, to: &mut [f64; N], at: usize) {
+        to[at..at + 4].copy_from_slice(&self);
+    }
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        [self[0] + o[0], self[1] + o[1], self[2] + o[2], self[3] + o[3]]
+    }
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        [self[0] * o[0], self[1] * o[1], self[2] * o[2], self[3] * o[3]]
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        let mut result = addend;
+        for k in 0..4 {
+            result[k] = f64::mul_add(self[k], factor[k], addend[k]);
+        }
+        result
+    }
+    #[inline(always)]
+    fn max(self, o: Self) -> Self {
+        let mut largest = o;
+        for k in 0..4 {
+            largest[k] = Lanes::max(self[k], o[k]);
+        }
+        largest
+    }
+}
 
 impl SimdF64 for f64 {
     const WIDTH: usize = 1;
+    type Row = F64x4;
 
     #[inline(always)]
     fn load(from: &[f64; BLOCK_SIZE], lane: usize) -> Self {

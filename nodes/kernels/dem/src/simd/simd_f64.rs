@@ -17,17 +17,6 @@ pub(crate) type F64x4 = [f64; 4];
 #[repr(C, align(64))]
 pub(crate) struct F64x8(pub(crate) [f64; 8]);
 
-impl F64x8 {
-    /// Sum of two rows.
-    #[inline(always)]
-    pub(crate) fn plus(mut self, other: &Self) -> Self {
-        for k in 0..8 {
-            self.0[k] += other.0[k];
-        }
-        self
-    }
-}
-
 /// Row indices of one block. Those of lanes `lane..lane + WIDTH` were checked to be below a bound.
 #[derive(Clone, Copy)]
 pub(crate) struct CheckedIndices<'a, L> {
@@ -66,6 +55,8 @@ impl<'a, L: SimdF64> CheckedIndices<'a, L> {
 pub(crate) trait SimdF64: Lanes {
     /// Lanes in one value; divides [`BLOCK_SIZE`].
     const WIDTH: usize;
+    /// A row of a table: four numbers, whatever the width.
+    type Row: SimdRow;
 
     /// Lanes `lane..lane + WIDTH` of a block.
     fn load(from: &[f64; BLOCK_SIZE], lane: usize) -> Self;
@@ -149,6 +140,24 @@ pub(crate) trait SimdF64: Lanes {
             part[..Self::WIDTH].iter().for_each(|p| *sum += p);
         }
     }
+}
+
+/// Four numbers of one grain.
+pub(crate) trait SimdRow: Copy {
+    /// One number four times.
+    fn splat(value: f64) -> Self;
+    /// Numbers `at..at + 4`.
+    fn load<const N: usize>(from: &[f64; N], at: usize) -> Self;
+    /// Writes numbers `at..at + 4`.
+    fn store<const N: usize>(self, to: &mut [f64; N], at: usize);
+    /// Sum of two rows.
+    fn add(self, other: Self) -> Self;
+    /// Product, number by number.
+    fn mul(self, other: Self) -> Self;
+    /// `self` × `factor` + `addend`, rounded once.
+    fn mul_add(self, factor: Self, addend: Self) -> Self;
+    /// The larger of two; the second where they do not compare.
+    fn max(self, other: Self) -> Self;
 }
 
 /// Lanes `lane..lane + WIDTH` of a block of vectors.

@@ -5,9 +5,8 @@ use crate::domain::state::{GrainsMut, State};
 use crate::settings::{EngineSettings, Features};
 use crate::simd::instruction_set::Simd;
 use crate::simd::kernel::Kernel;
-use crate::simd::simd_f64::{F64x4, F64x8, SimdF64};
+use crate::simd::simd_f64::{F64x4, F64x8, SimdF64, SimdRow};
 use grainlab_core::Mat3;
-use grainlab_core::lanes::Lanes;
 
 /// Speeds of a step, for the checks that follow it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -31,10 +30,8 @@ impl SpeedStats {
 
     /// Adds the next grains, in the order of the sum.
     pub(crate) fn add(&mut self, next: &Self) {
-        for c in 0..4 {
-            self.sum[c] += next.sum[c];
-            self.largest[c] = Lanes::max(next.largest[c], self.largest[c]);
-        }
+        self.sum = add(self.sum, next.sum);
+        self.largest = largest(self.largest, next.largest);
     }
 }
 
@@ -107,35 +104,59 @@ impl<F: ChunkForces, const SPINS: bool, const SIZES: bool> Kernel for Move<'_, F
     fn run<L: SimdF64>(self) -> SpeedStats {
         let (m, mut forces) = (self.motion, self.forces);
         let GrainsMut { position, twist } = self.grains;
-        let mut stats = SpeedStats::default();
+        let zero = L::Row::splat(0.0);
+        let (mut squares, mut largest) = (zero, zero);
+        let rate = [L::Row::load(&m.rate[0], 0), L::Row::load(&m.rate[1], 0), L::Row::load(&m.rate[2], 0)];
         let [drag, spin_drag] = m.drag_factors;
-        let mut inverse = [m.inverse_mass[0], m.inverse_inertia[0] * m.dt];
+        let (dt, drag) = (L::Row::splat(m.dt), [L::Row::splat(drag), L::Row::splat(spin_drag)]);
+        let mut inverse = [L::Row::splat(m.inverse_mass[0]), L::Row::splat(m.inverse_inertia[0] * m.dt)];
         for (k, (x, F64x8(t))) in position.iter_mut().zip(twist).enumerate() {
             if SIZES {
                 let g = self.first + k;
-                inverse = [m.inverse_mass[g], m.inverse_inertia[g] * m.dt];
+                inverse = [L::Row::splat(m.inverse_mass[g]), L::Row::splat(m.inverse_inertia[g] * m.dt)];
             }
-            let (F64x8(force), at, before) = (forces.on(k), *x, *t);
-            for c in 0..4 {
-                let mut kick = force[c] * inverse[0];
-                for axis in 0..3 {
-                    kick = m.rate[axis][c].mul_add(-before[axis], kick);
-                }
-                let v = kick.mul_add(m.dt, before[c]) * drag;
-                let mut drift = v;
-                for axis in 0..3 {
-                    drift = m.rate[axis][c].mul_add(at[axis], drift);
-                }
-                (t[c], x[c]) = (v, drift.mul_add(m.dt, at[c]));
-                if SPINS {
-                    t[4 + c] = force[4 + c].mul_add(inverse[1], before[4 + c]) * spin_drag;
-                }
-                stats.sum[c] += v * v;
-                stats.largest[c] = Lanes::max(v * v, stats.largest[c]);
+            let [force, torque] = forces.on::<L::Row>(k);
+            let mut v = L::Row::load(t, 0);
+            let mut kick = force.mul(inverse[0]);
+            for c in 0..3 {
+                kick = rate[c].mul_add(L::Row::splat(-t[c]), kick);
             }
+            v = kick.mul_add(dt, v).mul(drag[0]);
+            let mut drift = v;
+            for c in 0..3 {
+                drift = rate[c].mul_add(L::Row::splat(x[c]), drift);
+            }
+            drift.mul_add(dt, L::Row::load(x, 0)).store(x, 0);
+            v.store(t, 0);
+            if SPINS {
+                let w = torque.mul_add(inverse[1], L::Row::load(t, 4));
+                w.mul(drag[1]).store(t, 4);
+            }
+            let square = v.mul(v);
+            squares = squares.add(square);
+            largest = square.max(largest);
         }
+        let mut stats = SpeedStats::default();
+        squares.store(&mut stats.sum, 0);
+        largest.store(&mut stats.largest, 0);
         stats
     }
+}
+
+#[inline(always)]
+fn add(a: F64x4, b: F64x4) -> F64x4 {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]]
+}
+
+#[inline(always)]
+fn largest(a: F64x4, b: F64x4) -> F64x4 {
+    let mut result = a;
+    for k in 0..4 {
+        if b[k] > a[k] {
+            result[k] = b[k];
+        }
+    }
+    result
 }
 
 /// I + L dt: the deformation of the cell in one step.

@@ -1,8 +1,8 @@
 //! Loads, gathers and sums of lanes on x86-64.
 
-use super::registers::{Avx2, Avx512};
+use super::registers::{Avx2, Avx512, F64x4Avx2};
 use super::shuffle::{columns4, columns8, transpose4, transpose8, two_columns8};
-use crate::simd::simd_f64::{BLOCK_SIZE, CHUNK_SIZE, CheckedIndices, F64x4, F64x8, SimdF64};
+use crate::simd::simd_f64::{BLOCK_SIZE, CHUNK_SIZE, CheckedIndices, F64x4, F64x8, SimdF64, SimdRow};
 use grainlab_core::lanes::{LaneVec3, Lanes};
 use std::arch::x86_64::*;
 
@@ -91,20 +91,17 @@ fn add_rows<const N: usize>(mut a: [__m256d; N], b: [__m256d; N]) -> [__m256d; N
 
 impl SimdF64 for Avx2 {
     const WIDTH: usize = 4;
+    type Row = F64x4Avx2;
 
     gathers!(columns4);
 
     #[inline(always)]
     fn load(from: &[f64; BLOCK_SIZE], lane: usize) -> Self {
-        let from: &[f64] = &from[lane..lane + 4];
-        // SAFETY: the slice holds four numbers.
-        Self(unsafe { _mm256_loadu_pd(from.as_ptr()) })
+        Self(F64x4Avx2::load(from, lane).0)
     }
     #[inline(always)]
     fn store(self, to: &mut [f64; BLOCK_SIZE], lane: usize) {
-        let to: &mut [f64] = &mut to[lane..lane + 4];
-        // SAFETY: the slice holds four numbers.
-        unsafe { _mm256_storeu_pd(to.as_mut_ptr(), self.0) };
+        F64x4Avx2(self.0).store(to, lane);
     }
     #[inline(always)]
     fn all_below(indices: &[u32; BLOCK_SIZE], lane: usize, bound: usize) -> bool {
@@ -144,16 +141,30 @@ impl SimdF64 for Avx2 {
             }
             let force = if LEVERS { clear_last_lane(force) } else { force };
             let second = &mut sums[to.get(k)].0;
-            (Self::load(second, 0) + force).store(second, 0);
+            (load_half(second, 0) + force).store_half(second, 0);
             if MOMENTS {
-                (Self::load(second, 4) + on_second).store(second, 4);
+                (load_half(second, 4) + on_second).store_half(second, 4);
             }
             let first = &mut sums[from.get(k) % CHUNK_SIZE].0;
-            (Self::load(first, 0) - force).store(first, 0);
+            (load_half(first, 0) - force).store_half(first, 0);
             if MOMENTS {
-                (Self::load(first, 4) + on_first).store(first, 4);
+                (load_half(first, 4) + on_first).store_half(first, 4);
             }
         }
+    }
+}
+
+/// Numbers `at..at + 4` of a row.
+#[inline(always)]
+fn load_half(row: &[f64; 8], at: usize) -> Avx2 {
+    Avx2(F64x4Avx2::load(row, at).0)
+}
+
+impl Avx2 {
+    /// Writes numbers `at..at + 4` of a row.
+    #[inline(always)]
+    fn store_half(self, row: &mut [f64; 8], at: usize) {
+        F64x4Avx2(self.0).store(row, at);
     }
 }
 
@@ -171,6 +182,7 @@ fn clear_last_lane(row: Avx2) -> Avx2 {
 
 impl SimdF64 for Avx512 {
     const WIDTH: usize = 8;
+    type Row = F64x4Avx2;
 
     gathers!(columns8);
 
@@ -221,9 +233,9 @@ impl SimdF64 for Avx512 {
         if !MOMENTS {
             for k in 0..BLOCK_SIZE {
                 let second = &mut sums[to.get(k)].0;
-                (Avx2::load(second, 0) + rows[k].lower()).store(second, 0);
+                (load_half(second, 0) + rows[k].lower()).store_half(second, 0);
                 let first = &mut sums[from.get(k) % CHUNK_SIZE].0;
-                (Avx2::load(first, 0) - rows[k].lower()).store(first, 0);
+                (load_half(first, 0) - rows[k].lower()).store_half(first, 0);
             }
             return;
         }

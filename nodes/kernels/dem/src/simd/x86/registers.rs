@@ -3,6 +3,7 @@
 //! SAFETY, for every `unsafe` block of this folder that only calls arithmetic intrinsics: kernels with these types are
 //! entered only through the functions of `mod.rs`, which ask the processor for its features first.
 
+use crate::simd::simd_f64::SimdRow;
 use grainlab_core::lanes::{FRACTION, Lanes, RSQRT_MAGIC, WHOLE};
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Sub};
@@ -14,6 +15,10 @@ pub(crate) struct Avx2(pub(super) __m256d);
 /// Eight lanes: AVX-512 F, DQ and VL.
 #[derive(Clone, Copy)]
 pub(crate) struct Avx512(pub(super) __m512d);
+
+/// A row of a table.
+#[derive(Clone, Copy)]
+pub(crate) struct F64x4Avx2(pub(super) __m256d);
 
 macro_rules! operators {
     ($lanes:ty, $($operator:ident $method:ident $intrinsic:ident),*) => {$(
@@ -120,5 +125,40 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn select(mask: __mmask8, a: Self, b: Self) -> Self {
         Self(unsafe { _mm512_mask_blend_pd(mask, b.0, a.0) })
+    }
+}
+
+impl SimdRow for F64x4Avx2 {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self(unsafe { _mm256_set1_pd(value) })
+    }
+    #[inline(always)]
+    fn load<const N: usize>(from: &[f64; N], at: usize) -> Self {
+        let from: &[f64] = &from[at..at + 4];
+        // SAFETY: the slice holds four numbers.
+        Self(unsafe { _mm256_loadu_pd(from.as_ptr()) })
+    }
+    #[inline(always)]
+    fn store<const N: usize>(self, to: &mut [f64; N], at: usize) {
+        let to: &mut [f64] = &mut to[at..at + 4];
+        // SAFETY: the slice holds four numbers.
+        unsafe { _mm256_storeu_pd(to.as_mut_ptr(), self.0) };
+    }
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self((Avx2(self.0) + Avx2(other.0)).0)
+    }
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self((Avx2(self.0) * Avx2(other.0)).0)
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        Self(Avx2(self.0).mul_add(Avx2(factor.0), Avx2(addend.0)).0)
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(Avx2(self.0).max(Avx2(other.0)).0)
     }
 }
