@@ -43,5 +43,5 @@ def test_ctrl_c_ends_a_computation_at_once(call):
     script = textwrap.dedent(SCRIPT.format(path=str(SMOOTH), call=call))
     found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
     assert found.returncode == 0 and found.stdout, found.stderr
-    # Signals are looked for every 0.05 s; a loaded machine takes longer.
-    assert float(found.stdout) < 2.0
+    # Signals are looked for every 0.05 s. The longest of 28 took 0.064 s, on two cores with eight other busy processes.
+    assert float(found.stdout) < 0.2
