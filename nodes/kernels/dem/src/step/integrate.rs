@@ -108,7 +108,7 @@ impl<F: ChunkForces, const SPINS: bool, const SIZES: bool> Kernel for Move<'_, F
         let (m, mut forces) = (self.motion, self.forces);
         let GrainsMut { position, twist } = self.grains;
         let mut stats = SpeedStats::default();
-        let [drag, spin_drag] = m.drag_factors;
+        let (rate, [drag, spin_drag]) = (m.rate, m.drag_factors);
         let mut inverse = [m.inverse_mass[0], m.inverse_inertia[0] * m.dt];
         for (k, (x, F64x8(t))) in position.iter_mut().zip(twist).enumerate() {
             if SIZES {
@@ -119,12 +119,12 @@ impl<F: ChunkForces, const SPINS: bool, const SIZES: bool> Kernel for Move<'_, F
             for c in 0..4 {
                 let mut kick = force[c] * inverse[0];
                 for axis in 0..3 {
-                    kick = m.rate[axis][c].mul_add(-before[axis], kick);
+                    kick = rate[axis][c].mul_add(-before[axis], kick);
                 }
                 let v = kick.mul_add(m.dt, before[c]) * drag;
                 let mut drift = v;
                 for axis in 0..3 {
-                    drift = m.rate[axis][c].mul_add(at[axis], drift);
+                    drift = rate[axis][c].mul_add(at[axis], drift);
                 }
                 (t[c], x[c]) = (v, drift.mul_add(m.dt, at[c]));
                 if SPINS {
