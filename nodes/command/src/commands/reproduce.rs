@@ -4,7 +4,7 @@ use super::campaign::{self, gather};
 use grainlab_campaign::{Campaign, Engine, Folder, Options};
 use grainlab_console::{Failure, Format, Table, fixed, print, worse};
 use grainlab_node_kit::Exit;
-use grainlab_paper::{DISTANCE, Observed, States, distance};
+use grainlab_reproduce::paper::{DISTANCE, Observed, States, distance};
 use grainlab_reproduce::{Provenance, Reproduction, Size, campaign_text, pressure_of_phase, sample_of_scene};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

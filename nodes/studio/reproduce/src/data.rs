@@ -3,8 +3,8 @@
 use crate::Reproduction;
 use grainlab_console::{Cell, Failure, json};
 use grainlab_page::Dataset;
-use grainlab_paper::inversion::Errors;
-use grainlab_paper::{Comparison, PAPER, PRESSURE};
+use crate::paper::inversion::Errors;
+use crate::paper::{Comparison, PAPER, PRESSURE};
 use serde_json::{Value, json as object};
 use std::collections::BTreeMap;
 

@@ -4,8 +4,8 @@ use crate::Reproduction;
 use grainlab_emt::Modulus;
 use grainlab_page::plot::{Axis, Figure, Line, Marker, Point, Series};
 use grainlab_page::{Html, csv, figure, html, six_digits};
-use grainlab_paper::inversion::Row;
-use grainlab_paper::{Mean, PAPER, PRESSURE, PRESSURES, Quantity};
+use crate::paper::inversion::Row;
+use crate::paper::{Mean, PAPER, PRESSURE, PRESSURES, Quantity};
 
 /// Values of one sample at each pressure, with standard errors.
 type Values = [Option<(f64, Option<f64>)>; PRESSURES];

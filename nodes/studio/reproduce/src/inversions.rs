@@ -3,8 +3,8 @@
 use crate::Reproduction;
 use crate::tables::{head, mean, of_paper};
 use grainlab_page::{Cell, Html, code, html, signed, table};
-use grainlab_paper::inversion::{ERROR, Errors, Judged, Row, of_the_paper};
-use grainlab_paper::{Mean, PAPER, Quantity, States};
+use crate::paper::inversion::{ERROR, Errors, Judged, Row, of_the_paper};
+use crate::paper::{Mean, PAPER, Quantity, States};
 
 fn errors(found: Option<&Errors>, digits: usize) -> [Cell; 2] {
     [Cell::fixed(found.map(|e| e.magnitude), digits), Cell::signed(found.map(|e| e.bias), digits)]

@@ -1,6 +1,7 @@
 //! The tables and figures of the paper from simulated packings: one HTML page, JSON and CSV.
 //!
 //! - [`Reproduction`]: the packings, compared and judged, and where they come from
+//! - [`paper`]: its tables, and packings compared with them
 //! - [`campaign_text`]: the campaign that prepares them
 //! - `page`: the HTML page; `tables`, `figures`, `inversions`: its parts
 //! - `data`: the same as JSON and CSV; `text`: a summary for a terminal
@@ -9,15 +10,16 @@ mod data;
 mod figures;
 mod inversions;
 mod page;
+pub mod paper;
 mod plan;
 mod tables;
 mod text;
 
 pub use plan::{Size, campaign_text, pressure_of_phase, sample_of_scene};
 
-use grainlab_paper::claims::{Claim, claims};
-use grainlab_paper::inversion::{Judged, judge};
-use grainlab_paper::{Comparison, States, compare};
+use paper::claims::{Claim, claims};
+use paper::inversion::{Judged, judge};
+use paper::{Comparison, States, compare};
 
 /// Origin of the packings.
 #[derive(Clone, Debug)]
@@ -57,7 +59,7 @@ impl Reproduction {
         Judged::find(&self.judged, model, gamma, calibration)
     }
 
-    fn get(&self, quantity: grainlab_paper::Quantity, sample: usize, pressure: usize) -> Option<&Comparison> {
+    fn get(&self, quantity: crate::paper::Quantity, sample: usize, pressure: usize) -> Option<&Comparison> {
         Comparison::find(&self.compared, quantity, sample, pressure)
     }
 }

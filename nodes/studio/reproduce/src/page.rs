@@ -2,8 +2,8 @@
 
 use crate::Reproduction;
 use grainlab_page::{Cell, Html, Page, Section, code, finding, heading, html, lines, list, paragraph, table};
-use grainlab_paper::claims::Verdict;
-use grainlab_paper::{PAPER, PRESSURE};
+use crate::paper::claims::Verdict;
+use crate::paper::{PAPER, PRESSURE};
 
 /// Parts of the scenes that the text of the paper does not have, or has otherwise.
 const DEPARTURES: [&str; 5] = [
@@ -154,7 +154,7 @@ impl Reproduction {
 
     /// The sign of the errors of the paper's model, here and in the paper.
     fn bias(&self) -> Html {
-        let [_, _, theirs] = grainlab_paper::inversion::of_the_paper();
+        let [_, _, theirs] = crate::paper::inversion::of_the_paper();
         let ours = self.judged("ratio", Some("total"), "paper").and_then(|j| j.eps);
         let Some(ours) = ours else { return Html::default() };
         paragraph(format!(

@@ -1,6 +1,6 @@
 //! The campaign that prepares the packings.
 
-use grainlab_paper::{PAPER, PRESSURE};
+use crate::paper::{PAPER, PRESSURE};
 
 /// Size of a reproduction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use crate::Reproduction;
 use grainlab_emt::Modulus;
 use grainlab_page::{Cell, Html, code, fixed, html, plus_minus, signed, table};
-use grainlab_paper::{Comparison, Mean, PAPER, PRESSURE, Quantity, States};
+use crate::paper::{Comparison, Mean, PAPER, PRESSURE, Quantity, States};
 
 /// A mean with its error, in `scale`.
 pub(crate) fn mean(m: Option<&Mean>, scale: f64, digits: usize) -> Cell {

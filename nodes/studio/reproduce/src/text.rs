@@ -2,7 +2,7 @@
 
 use crate::Reproduction;
 use grainlab_console::{Table, fixed, wrapped};
-use grainlab_paper::{Comparison, PAPER, PRESSURE, Quantity, States};
+use crate::paper::{Comparison, PAPER, PRESSURE, Quantity, States};
 
 impl Reproduction {
     /// A row for each state, and the claims.

@@ -1,6 +1,6 @@
 //! Quantities that are compared with the paper.
 
-use crate::tables::{PAPER, REFERENCE_SOLID_FRACTION};
+use super::tables::{PAPER, REFERENCE_SOLID_FRACTION};
 use grainlab_core::results::Microstructure;
 use grainlab_core::results::PackingReport;
 use grainlab_emt::{Calibration, Conditions, Eq16Reading, Medium, Modulus, StrainRatio, model};
@@ -155,7 +155,7 @@ fn implied_moduli(sample: usize, pressure: usize) -> Option<[f64; 3]> {
     let state = &PAPER[sample].states[pressure];
     let conditions = Conditions {
         gamma: StrainRatio::given(PAPER[sample].gamma_over_delta[pressure]),
-        ..Conditions::at(crate::tables::PRESSURE[pressure])
+        ..Conditions::at(super::tables::PRESSURE[pressure])
     };
     let structure = Microstructure::paper(state.k_ratio, state.k_hat, state.eps_ratio);
     let moduli = model("ratio")?.predict(&structure, &conditions, &Calibration::PAPER).ok()?;

@@ -1,8 +1,8 @@
 //! Numbers of packings compared with those of the paper.
 
-use crate::quantity::{Printed, Quantity};
-use crate::sample::States;
-use crate::scatter::of_one;
+use super::quantity::{Printed, Quantity};
+use super::sample::States;
+use super::scatter::of_one;
 use grainlab_page::Mean;
 
 /// Seeds from which their own scatter gives the error.

@@ -1,9 +1,9 @@
 //! Distance of packings from the paper, in one number, term by term.
 
-use crate::compare::{Comparison, compare};
-use crate::quantity::Quantity;
-use crate::sample::States;
-use crate::tables::SAMPLES;
+use super::compare::{Comparison, compare};
+use super::quantity::Quantity;
+use super::sample::States;
+use super::tables::SAMPLES;
 use grainlab_emt::Modulus;
 
 /// The sum of the first four terms, and the terms.

@@ -1,14 +1,14 @@
 //! Simulated packings, by sample and pressure.
 
-use crate::tables::{PRESSURES, SAMPLES};
+use super::tables::{PRESSURES, SAMPLES};
 use grainlab_core::results::PackingReport;
 
 /// One simulated packing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Observed {
-    /// Index of the sample in [`crate::PAPER`].
+    /// Index of the sample in [`super::PAPER`].
     pub sample: usize,
-    /// Index of the pressure in [`crate::PRESSURE`].
+    /// Index of the pressure in [`super::PRESSURE`].
     pub pressure: usize,
     /// Seed of its run.
     pub seed: u64,

@@ -1,7 +1,7 @@
 //! Scatter of packings of one recipe from seed to seed.
 
-use crate::quantity::Quantity;
-use crate::tables::SAMPLES;
+use super::quantity::Quantity;
+use super::tables::SAMPLES;
 use grainlab_emt::Modulus;
 
 /// Grains of the packings of which [`SCATTER`] is the scatter.

@@ -60,7 +60,7 @@ fn assert_alike(learned: &Calibration, kept: &Calibration) {
 #[test]
 fn the_stored_errors_with_the_constants_of_the_paper_are_learned_from_the_same_packings() {
     let all = ["isotropic.csv", "anisotropic.csv", "wide.csv"].map(csv::samples).concat();
-    let kept = include_str!("../../../../kernels/emt/src/calibration/paper.toml");
+    let kept = include_str!("../../../emt/src/calibration/paper.toml");
     let mut learned = Calibration::PAPER;
     learned.discrepancies = discrepancies(&all.iter().collect::<Vec<_>>(), &learned);
     assert_alike(&learned, &Calibration::parse(kept).unwrap());
@@ -70,7 +70,7 @@ fn the_stored_errors_with_the_constants_of_the_paper_are_learned_from_the_same_p
 fn the_built_in_file_is_what_is_written() {
     assert_eq!(
         ours().to_toml().unwrap(),
-        include_str!("../../../../kernels/emt/src/calibration/grainlab.toml")
+        include_str!("../../../emt/src/calibration/grainlab.toml")
     );
 }
 

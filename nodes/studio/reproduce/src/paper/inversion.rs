@@ -1,7 +1,7 @@
 //! The models judged on the simulated packings, whose microstructure was counted.
 
-use crate::sample::{Observed, States};
-use crate::tables::PAPER;
+use super::sample::{Observed, States};
+use super::tables::PAPER;
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{
     Calibration, Estimate, Model, Modulus, Observation, StrainRatio, StrainRatioSource, models,
@@ -157,7 +157,7 @@ fn judge_one(case: Case, states: &States) -> Judged {
 /// Errors of the paper's own inversion on its own packings (Table III): k by the ratios, k by the effective medium theory, ε.
 pub fn of_the_paper() -> [Errors; 3] {
     let states = || PAPER.iter().flat_map(|s| &s.states);
-    let all = |error: fn(&crate::tables::State) -> f64| {
+    let all = |error: fn(&super::tables::State) -> f64| {
         let errors: Vec<f64> = states().map(error).collect();
         Errors::of(&errors).unwrap_or(Errors { magnitude: f64::NAN, bias: f64::NAN, rms: f64::NAN, count: 0 })
     };

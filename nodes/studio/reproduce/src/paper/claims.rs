@@ -1,10 +1,10 @@
 //! Statements of the paper, and the goals of the reproduction, checked on the means.
 
-use crate::compare::Comparison;
-use crate::inversion::{Errors, Judged, of_the_paper};
-use crate::quantity::Quantity;
-use crate::sample::States;
-use crate::tables::{PAPER, PRESSURES, SAMPLES};
+use super::compare::Comparison;
+use super::inversion::{Errors, Judged, of_the_paper};
+use super::quantity::Quantity;
+use super::sample::States;
+use super::tables::{PAPER, PRESSURES, SAMPLES};
 use grainlab_emt::Modulus;
 
 /// A statement and whether it holds.
@@ -253,5 +253,5 @@ fn ours_beats_the_paper(judged: &[Judged]) -> Option<Claim> {
 }
 
 fn place(sample: usize, pressure: usize) -> String {
-    format!("{} at {} kPa", PAPER[sample].name, crate::tables::PRESSURE[pressure] / 1e3)
+    format!("{} at {} kPa", PAPER[sample].name, super::tables::PRESSURE[pressure] / 1e3)
 }
