@@ -1,10 +1,10 @@
 //! The data of the page as JSON and CSV.
 
 use crate::Reproduction;
-use grainlab_console::{Cell, Failure, json};
-use grainlab_page::Dataset;
 use crate::paper::inversion::Errors;
 use crate::paper::{Comparison, PAPER, PRESSURE};
+use grainlab_console::{Cell, Failure, json};
+use grainlab_page::Dataset;
 use serde_json::{Value, json as object};
 use std::collections::BTreeMap;
 

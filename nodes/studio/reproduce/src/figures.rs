@@ -1,11 +1,11 @@
 //! Figures 1 to 4 as a plot for each sample: ours and inferred values with error bars, the paper's as outlines.
 
 use crate::Reproduction;
+use crate::paper::inversion::Row;
+use crate::paper::{Mean, PAPER, PRESSURE, PRESSURES, Quantity};
 use grainlab_emt::Modulus;
 use grainlab_page::plot::{Axis, Figure, Line, Marker, Point, Series};
 use grainlab_page::{Html, csv, figure, html, six_digits};
-use crate::paper::inversion::Row;
-use crate::paper::{Mean, PAPER, PRESSURE, PRESSURES, Quantity};
 
 /// Values of one sample at each pressure, with standard errors.
 type Values = [Option<(f64, Option<f64>)>; PRESSURES];

@@ -1,10 +1,10 @@
 //! The inversion: every model judged, and the rows of Table III.
 
 use crate::Reproduction;
-use crate::tables::{head, mean, of_paper};
-use grainlab_page::{Cell, Html, code, html, signed, table};
 use crate::paper::inversion::{ERROR, Errors, Judged, Row, of_the_paper};
 use crate::paper::{Mean, PAPER, Quantity, States};
+use crate::tables::{head, mean, of_paper};
+use grainlab_page::{Cell, Html, code, html, signed, table};
 
 fn errors(found: Option<&Errors>, digits: usize) -> [Cell; 2] {
     [Cell::fixed(found.map(|e| e.magnitude), digits), Cell::signed(found.map(|e| e.bias), digits)]

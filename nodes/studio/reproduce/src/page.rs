@@ -1,9 +1,9 @@
 //! The HTML page: one file, without references to others.
 
 use crate::Reproduction;
-use grainlab_page::{Cell, Html, Page, Section, code, finding, heading, html, lines, list, paragraph, table};
 use crate::paper::claims::Verdict;
 use crate::paper::{PAPER, PRESSURE};
+use grainlab_page::{Cell, Html, Page, Section, code, finding, heading, html, lines, list, paragraph, table};
 
 /// Parts of the scenes that the text of the paper does not have, or has otherwise.
 const DEPARTURES: [&str; 5] = [

@@ -1,9 +1,9 @@
 //! Tables I, II and III, and the moduli, ours compared with the paper's.
 
 use crate::Reproduction;
+use crate::paper::{Comparison, Mean, PAPER, PRESSURE, Quantity, States};
 use grainlab_emt::Modulus;
 use grainlab_page::{Cell, Html, code, fixed, html, plus_minus, signed, table};
-use crate::paper::{Comparison, Mean, PAPER, PRESSURE, Quantity, States};
 
 /// A mean with its error, in `scale`.
 pub(crate) fn mean(m: Option<&Mean>, scale: f64, digits: usize) -> Cell {

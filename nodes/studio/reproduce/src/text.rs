@@ -1,8 +1,8 @@
 //! A summary for a terminal.
 
 use crate::Reproduction;
-use grainlab_console::{Table, fixed, wrapped};
 use crate::paper::{Comparison, PAPER, PRESSURE, Quantity, States};
+use grainlab_console::{Table, fixed, wrapped};
 
 impl Reproduction {
     /// A row for each state, and the claims.

@@ -68,10 +68,7 @@ fn the_stored_errors_with_the_constants_of_the_paper_are_learned_from_the_same_p
 
 #[test]
 fn the_built_in_file_is_what_is_written() {
-    assert_eq!(
-        ours().to_toml().unwrap(),
-        include_str!("../../../emt/src/calibration/grainlab.toml")
-    );
+    assert_eq!(ours().to_toml().unwrap(), include_str!("../../../emt/src/calibration/grainlab.toml"));
 }
 
 /// Errors of one quantity over samples.
