@@ -12,7 +12,7 @@ const BEYOND: f64 = 3e-3;
 const FAR: f64 = 3.0;
 
 /// The errors of every model without its own error estimate, for each γ/Δ. Every recipe counts alike.
-/// The errors of each recipe are judged by those of the others, and all are enlarged until nearly none is [`FAR`] off.
+/// The errors of each recipe are judged by those of the others, and all are enlarged until nearly none is three standard deviations off.
 pub fn discrepancies(samples: &[&CalibrationSample], calibration: &Calibration) -> Vec<ModelDiscrepancy> {
     const SOURCES: [StrainRatioSource; 4] = [
         StrainRatioSource::Zero,
