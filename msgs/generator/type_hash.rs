@@ -2,7 +2,7 @@
 
 use super::Library;
 use super::parse::{Base, Field, MessageFile, Shape};
-use sha2::{Digest, Sha256};
+use hmac_sha256::Hash;
 
 /// Returns the hash of `file`, as `RIHS01_` and 64 hexadecimal digits.
 pub(crate) fn rihs01(file: &MessageFile, library: &Library) -> String {
@@ -14,7 +14,7 @@ pub(crate) fn rihs01(file: &MessageFile, library: &Library) -> String {
         description(file),
         referenced.join(", ")
     );
-    let digits = Sha256::digest(json.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect::<String>();
+    let digits = Hash::hash(json.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect::<String>();
     format!("RIHS01_{digits}")
 }
 

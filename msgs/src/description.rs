@@ -87,8 +87,8 @@ impl TypeInfo {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hmac_sha256::Hash;
     use serde_json::Value;
-    use sha2::{Digest, Sha256};
 
     /// JSON with spaces behind colons and commas, as REP-2016 hashes it.
     fn canonical(value: &Value) -> String {
@@ -122,7 +122,7 @@ mod tests {
     fn the_hash_of_every_type_follows_from_its_description() {
         for info in TypeInfo::all() {
             let json = canonical(&serde_json::to_value(info.description()).unwrap());
-            let digest = Sha256::digest(json.as_bytes());
+            let digest = Hash::hash(json.as_bytes());
             let hash: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
             assert_eq!(format!("RIHS01_{hash}"), info.hash, "{}", info.type_name);
         }
