@@ -1,9 +1,9 @@
 //! The messages of the laboratory: generated ROS 2 types, schema texts, type hashes, the topic contract and
 //! the conversion to and from the types of the kernels.
 //!
-//! - [`msg`] and the packages of standard messages: types that the build makes of the message files, those of this
-//!   project in `msg/`, those of ROS 2 in `std/` (same fields, same type hashes). After a change of a message
-//!   file: `tests/golden/make_golden.py`
+//! - [`msg`] and the packages of standard messages: the types, which the build script generates from the message
+//!   files of this project (`msg/`) and of ROS 2 (`std/`; same fields, same type hashes). After you change a message
+//!   file, run `tests/golden/make_golden.py`
 //! - [`INTERFACES`]: texts of other types of ROS 2, in `interfaces/`
 //! - `message`: name, hash and schema of a type; [`TypeInfo`]: the same as a value
 //! - `description`: the type description of a type, as `~/get_type_description` returns it

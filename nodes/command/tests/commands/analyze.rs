@@ -104,7 +104,7 @@ fn an_interrupted_analysis_prints_what_it_has() {
     assert!(err.contains(&format!("interrupted: {count} packing")), "{err}");
 }
 
-/// Moduli, and whether they are those of smooth grains, of 500 grains without friction.
+/// Measures 500 grains without friction: their moduli, and whether these belong to smooth grains.
 fn of_smooth_grains(command: &str, flags: &[&str]) -> Value {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/packings/smooth_500.csv.gz");
     let out = grainlab(&[&[command, file, "--format", "json"], flags].concat()).assert_code(0);

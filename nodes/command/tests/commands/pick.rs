@@ -160,7 +160,7 @@ fn a_fault_is_named_with_its_file_and_line_and_a_refused_record_keeps_the_others
     }
 }
 
-/// Two strong waves, the later of which comes when S may: the earlier one may be P.
+/// Two strong waves: the later one arrives when S may, so the earlier one may be P.
 #[test]
 fn another_wave_that_may_be_the_one_of_the_mode_is_noted_with_its_speed() {
     let folder = tempfile::tempdir().unwrap();

@@ -20,7 +20,7 @@ pub(super) struct Output {
     pub(super) format: Format,
     /// Print everything before the summary.
     pub(super) verbose: bool,
-    /// The run is continued: its times are those of the last part.
+    /// True if the run was resumed: its times cover only the part since then.
     pub(super) resumed: bool,
     /// Write the page of the run.
     #[cfg_attr(not(feature = "studio"), expect(dead_code, reason = "the studio writes pages"))]
