@@ -3,7 +3,7 @@
 use grainlab_calibration::CalibrationSample;
 use grainlab_core::Material;
 use grainlab_core::results::StrainRatios;
-use grainlab_emt::{Moduli, Observation, StrainRatio};
+use grainlab_emt::{Measured, Moduli, Observation, StrainRatio};
 use grainlab_testkit::golden::Table;
 
 /// The packings of one ensemble; the path is the recipe.
@@ -54,4 +54,18 @@ pub(crate) fn paper_rows() -> Vec<(Observation, f64)> {
         (o, n("eps"))
     };
     t.rows.iter().map(row).collect()
+}
+
+/// The states of the paper's Table III with everything that is known of them, and the k and ε counted in its simulation.
+pub(crate) fn paper_rows_known() -> Vec<(Observation, f64, f64)> {
+    let t = Table::read("paper_rows.csv");
+    let known = |(row, (mut o, eps)): (&Vec<String>, (Observation, f64))| {
+        o.conditions.solid_fraction = Some(Measured::exact(t.number(row, "phi")));
+        o.conditions.stress_ratio = Some(Measured::exact(0.0));
+        o.conditions.size_spread = Some(0.0);
+        o.conditions.material = Some(Material::GLASS);
+        o.grains = Some(2000);
+        (o, t.number(row, "k"), eps)
+    };
+    t.rows.iter().zip(paper_rows()).map(known).collect()
 }

@@ -28,7 +28,7 @@ fn pulls(e: &Estimate, s: &CalibrationSample) -> Vec<(InferredQuantity, f64)> {
 }
 
 /// True if the sample is in the domain of `relaxed` that README states.
-fn inside(s: &CalibrationSample) -> bool {
+pub(crate) fn inside(s: &CalibrationSample) -> bool {
     let within = |v: f64, [low, high]: [f64; 2]| (low..=high).contains(&v);
     within(s.z, [4.2, 6.4])
         && within(s.eps, [-0.08, 0.13])

@@ -12,6 +12,7 @@ mod ranks;
 mod rock_physics;
 mod series;
 mod stress_and_fabric;
+mod table;
 
 use grainlab_calibration::{CalibrationSample, discrepancies, learn};
 use grainlab_core::results::InferredQuantity;
