@@ -73,7 +73,7 @@ mod wave_moduli;
 
 pub use calibration::{
     Calibration, CalibrationError, DeviatorLaw, GROUPS, ISOSTATIC, IsotropicCalibration, ModelDiscrepancy,
-    NetworkState, RattlerLaw, Reach, RelaxationCalibration, SCATTERED, ScalingLaw, Scatter,
+    NetworkState, RattlerLaw, Reach, RelaxationCalibration, SCATTERED, ScalingLaw, Scatter, ScatterLevels,
 };
 pub use checks::{ROUNDING, check_structure};
 pub use conditions::{

@@ -77,7 +77,7 @@ pub enum Warning {
     SizesUnknown,
     /// The number of grains is not known; that of the packings of the calibration was taken.
     #[error(
-        "the number of grains is not known: the error has the scatter of samples of 2000 grains; that of fewer is larger"
+        "the number of grains is not known: the error is that of 200 to 20,000 grains, each number as probable on a logarithmic scale"
     )]
     GrainsUnknown,
     /// An input of the state contributes most of the variance of a quantity.
@@ -317,6 +317,15 @@ pub enum Warning {
         degrees_of_freedom: usize,
         /// The modulus furthest from its prediction by the others, and the difference in standard deviations.
         worst: (Modulus, f64),
+    },
+    /// The moduli fit no structure of the calibration's packings well.
+    #[error(
+        "the moduli fit the calibration's packings badly (p = {probability:.1e}): the sample is of another kind, or the errors are \
+         larger than given; do not rely on the stated errors"
+    )]
+    Unlike {
+        /// Probability of a larger χ², or of a modulus further from its prediction by the others.
+        probability: f64,
     },
     /// The moduli are improbable under the posterior, although their χ² about the estimate is ordinary.
     #[error(

@@ -18,6 +18,7 @@ pub(crate) fn samples(name: &str) -> Vec<CalibrationSample> {
         CalibrationSample {
             packing: format!("{preparation} {} {}", t.cell(row, "mu2"), t.cell(row, "seed")),
             preparation,
+            file: name.to_owned(),
             place: name.to_owned(),
             grains: number("grains") as u32,
             material: Material {
@@ -42,6 +43,11 @@ pub(crate) fn samples(name: &str) -> Vec<CalibrationSample> {
         }
     };
     t.rows.iter().map(sample).collect()
+}
+
+/// The packings of other recipes that taught the calibration.
+pub(crate) fn others() -> Vec<CalibrationSample> {
+    ["wide.csv", "recipes.csv"].map(samples).concat()
 }
 
 /// The states of the paper's Table III, each with the ε counted in its simulation.

@@ -20,9 +20,8 @@ struct Packings {
 
 impl Packings {
     fn read() -> Self {
-        let [isotropic, anisotropic, others] =
-            ["isotropic.csv", "anisotropic.csv", "wide.csv"].map(csv::samples);
-        Self { isotropic, anisotropic, others }
+        let [isotropic, anisotropic] = ["isotropic.csv", "anisotropic.csv"].map(csv::samples);
+        Self { isotropic, anisotropic, others: csv::others() }
     }
 
     /// The calibration from those kept.

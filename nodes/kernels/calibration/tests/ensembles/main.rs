@@ -36,9 +36,10 @@ fn the_built_in_calibration_is_learned_from_the_stored_ensembles() {
         "grainlab",
         &csv::samples("isotropic.csv"),
         &csv::samples("anisotropic.csv"),
-        &csv::samples("wide.csv"),
+        &csv::others(),
     )
     .unwrap();
+    written(&learned, "grainlab.toml");
     assert_alike(&learned, ours());
 }
 
@@ -60,11 +61,20 @@ fn assert_alike(learned: &Calibration, kept: &Calibration) {
 
 #[test]
 fn the_stored_errors_with_the_constants_of_the_paper_are_learned_from_the_same_packings() {
-    let all = ["isotropic.csv", "anisotropic.csv", "wide.csv"].map(csv::samples).concat();
+    let all = [csv::samples("isotropic.csv"), csv::samples("anisotropic.csv"), csv::others()].concat();
     let kept = include_str!("../../../emt/src/calibration/paper.toml");
     let mut learned = Calibration::PAPER;
     learned.discrepancies = discrepancies(&all.iter().collect::<Vec<_>>(), &learned);
+    written(&learned, "paper.toml");
     assert_alike(&learned, &Calibration::parse(kept).unwrap());
+}
+
+/// Writes a built-in calibration anew with `GRAINLAB_WRITE=1`.
+fn written(learned: &Calibration, file: &str) {
+    if std::env::var_os("GRAINLAB_WRITE").is_some() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../emt/src/calibration/");
+        std::fs::write(format!("{path}{file}"), learned.to_toml().unwrap()).unwrap();
+    }
 }
 
 #[test]

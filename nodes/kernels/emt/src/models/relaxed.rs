@@ -41,6 +41,9 @@ const NAME: &str = "relaxed";
 /// Standard deviation of ε above which ε counts as undetermined: larger than the ε of any packing.
 const UNDETERMINED: f64 = 0.2;
 
+/// Probability of the misfit below which an estimate is not `ok`: the laws, and the stated errors with them, are of other packings.
+const UNLIKE: f64 = 0.01;
+
 impl Model for Relaxed {
     fn name(&self) -> &'static str {
         NAME
@@ -168,8 +171,11 @@ fn point_estimate(
         let of_all = normal::score(chi_square / degrees_of_freedom as f64, degrees_of_freedom, Some(below));
         // The largest of several differences.
         let of_worst = 2.0 * normal::below(-worst.1) * data.used as f64;
-        if normal::below(-of_all).min(of_worst) < FALSE_ALARM {
+        let probability = normal::below(-of_all).min(of_worst);
+        if probability < FALSE_ALARM {
             warnings.push(Warning::Conflict { chi_square, degrees_of_freedom, worst });
+        } else if probability < UNLIKE {
+            warnings.push(Warning::Unlike { probability });
         }
     }
     PointEstimate { misfit, warnings, ..point }

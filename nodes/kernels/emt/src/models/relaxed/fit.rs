@@ -119,7 +119,7 @@ impl Fit {
         let at_zero = data.masked(isotropic.slopes());
         let covariance = |slopes: &ByInvariants, by_eps: &Moduli, of_inputs: &Square| {
             let scatter = network
-                .scatter_in(z, &state.variance_factors, laws)
+                .scatter_in(z, &state.scatter, laws)
                 .fixed_view::<INVARIANTS, INVARIANTS>(0, 0)
                 .into_owned();
             let of_packings = slopes * scatter * slopes.transpose();
@@ -238,7 +238,7 @@ impl Fit {
     ) -> PointEstimate {
         let (z, eps) = (self.z, self.eps);
         let gain = self.gain();
-        let scatter = network.scatter_in(z, &state.variance_factors, &state.laws);
+        let scatter = network.scatter_in(z, &state.scatter, &state.laws);
         let (laws, of_k, of_eps) = (&state.laws, network.rattlers, network.eps_stiffness);
         // Rows: ε weighted by stiffness, k. Columns: z, ε.
         let follows = SMatrix::<f64, 2, 2>::new(
@@ -303,7 +303,7 @@ impl Fit {
             let row = by_moduli * by_eps(&self.by_invariants, network, z, laws);
             errors += row * row.transpose() * (mean * mean + spread * spread);
         }
-        errors *= self.growth(data, network);
+        errors *= self.outside(network).iter().map(Outside::growth).product::<f64>();
         let mut discrepancy = MicrostructureCovariance::zeros();
         for (a, qa) in rows.into_iter().enumerate() {
             for (b, qb) in rows.into_iter().enumerate() {
@@ -317,13 +317,6 @@ impl Fit {
     /// The inferred quantities that are outside the packings of the calibration.
     pub(super) fn outside(&self, network: &RelaxationCalibration) -> Vec<Outside> {
         network.reach.outside_structure(self.z, self.fits_eps.then_some(self.eps))
-    }
-
-    /// Factor of the variance of the model's error, 1 or more: it grows with the distance of the structure from the
-    /// packings of the calibration, and where the moduli fit the laws less well than those of the packings.
-    fn growth(&self, data: &Data, network: &RelaxationCalibration) -> f64 {
-        let misfit = self.degrees_of_freedom(data).map_or(1.0, |n| (self.chi_square / n as f64).max(1.0));
-        self.outside(network).iter().map(Outside::growth).product::<f64>() * misfit
     }
 }
 

@@ -72,7 +72,7 @@ impl Likelihood for NetworkLikelihood<'_> {
             return None;
         }
         let growth: f64 = network.reach.outside_structure(z, Some(eps)).iter().map(Outside::growth).product();
-        let scatter = network.scatter_in(z, &state.variance_factors, &state.laws) * growth;
+        let scatter = network.scatter_in(z, &state.scatter, &state.laws) * growth;
         let slopes = data.masked(invariants.slopes());
         let mut covariance = slopes * scatter.fixed_view::<INVARIANTS, INVARIANTS>(0, 0) * slopes.transpose()
             + data.covariance;
