@@ -91,7 +91,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     };
     say!("grainlab: Eqs. 21 and 22 from {files}{}", (0..4).map(text).collect::<String>());
     let more = args.anisotropic.iter().zip([&anisotropic]).chain(args.other.iter().zip(&others));
-    files += &more.map(|(path, samples)| format!("; {}", packings::counted(path, samples))).collect::<String>();
+    files +=
+        &more.map(|(path, samples)| format!("; {}", packings::counted(path, samples))).collect::<String>();
     if let Some(network) = &calibration.network {
         let none = network.dilatation.by_stress_ratio == [0.0; 3];
         let note = if none { "; without q/p, because none is above 1e-5" } else { "" };

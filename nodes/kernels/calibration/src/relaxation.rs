@@ -26,6 +26,9 @@ const REPETITIONS_OF_GROWTH: usize = 3;
 const BY_SIZES: [f64; 2] = [0.0, 500.0];
 const BY_PRESSURE: [f64; 2] = [-0.5, 0.5];
 
+/// |q/p| below which a packing shows the scatter of the laws without that of the effect of a deviator.
+const ISOTROPIC: f64 = 0.05;
+
 /// |q/p| below which a stress counts as isotropic: a servo that has settled leaves up to 5e-6 (`tests/golden/ensembles`).
 const SETTLED: f64 = 1e-5;
 
@@ -50,7 +53,8 @@ impl Reduced<'_> {
         let [of_recipe, of_sample] = ScatterLevels::weights(self.sample.z);
         let [recipe, sample] = &known.levels;
         std::array::from_fn(|i| {
-            let variance = recipe[(i, i)] / of_recipe[i].powi(2) + sample[(i, i)] * of_size[i] / of_sample[i].powi(2);
+            let variance =
+                recipe[(i, i)] / of_recipe[i].powi(2) + sample[(i, i)] * of_size[i] / of_sample[i].powi(2);
             self.of_recipe / (variance * growth[i]).sqrt()
         })
     }
@@ -89,13 +93,26 @@ pub(crate) fn network(samples: &[&CalibrationSample]) -> Result<RelaxationCalibr
     // The first laws are fitted as if all scatter were that of samples.
     let mut known =
         Known { levels: [Scatter::zeros(), Scatter::identity()], by_state: ByState::default(), grains };
+    let families = families(&rows);
     for _ in 0..REPETITIONS {
         let mut residuals = Vec::with_capacity(recipes.len());
-        for recipe in &recipes {
-            let (left_out, kept): (Vec<_>, Vec<_>) =
-                rows.iter().partition(|row| row.sample.preparation == *recipe);
+        for (recipe, family) in &families {
+            // Recipes of a family are pressed alike: those of a single family are left out one by one.
+            let is_kept = |other: &str| {
+                if families.values().any(|f| f != family) {
+                    families[other] != *family
+                } else {
+                    other != *recipe
+                }
+            };
+            let kept: Vec<_> = rows.iter().filter(|row| is_kept(&row.sample.preparation)).collect();
             let others = fitted(&kept, &known)?;
-            residuals.push(left_out.into_iter().map(|row| (row, residual(&others, row))).collect());
+            // What a deviator does to the stiffness differs by itself, see `RESPONSE_STDDEV`.
+            let left_out = rows
+                .iter()
+                .filter(|row| row.sample.preparation == *recipe && row.state.stress_ratio.abs() < ISOTROPIC);
+            let of_recipe: Vec<_> = left_out.map(|row| (row, residual(&others, row))).collect();
+            residuals.extend((!of_recipe.is_empty()).then_some(of_recipe));
         }
         known = levels(&residuals, known.by_state, grains)?;
     }
@@ -149,7 +166,11 @@ fn fitted(rows: &[&Reduced<'_>], known: &Known) -> Result<RelaxationCalibration,
     let law = |place: usize, value: fn(&Invariants) -> f64| {
         let at = |onset: f64| {
             let point = |r: &&Reduced<'_>| {
-                (ScalingLaw::terms(r.sample.z, onset, &r.state), value(&r.invariants), r.weights(known)[place])
+                (
+                    ScalingLaw::terms(r.sample.z, onset, &r.state),
+                    value(&r.invariants),
+                    r.weights(known)[place],
+                )
             };
             determined(&rows.iter().map(point).collect::<Vec<_>>(), packings, WHAT)
         };
@@ -166,8 +187,10 @@ fn fitted(rows: &[&Reduced<'_>], known: &Known) -> Result<RelaxationCalibration,
         let points: Vec<_> = rows.iter().map(point).collect();
         Ok(DeviatorLaw::new(determined(&points, packings, WHAT)?.coefficients))
     };
-    let rattlers: Vec<_> =
-        rows.iter().map(|r| (RattlerLaw::terms(r.sample.z, &r.state), r.sample.k, r.weights(known)[SCATTERED - 1])).collect();
+    let rattlers: Vec<_> = rows
+        .iter()
+        .map(|r| (RattlerLaw::terms(r.sample.z, &r.state), r.sample.k, r.weights(known)[SCATTERED - 1]))
+        .collect();
     Ok(RelaxationCalibration {
         theta: law(0, |i| i.ln_theta)?,
         shear: law(1, |i| i.ln_shear)?,
@@ -203,51 +226,24 @@ fn residual(network: &RelaxationCalibration, row: &Reduced<'_>) -> [f64; SCATTER
 /// Residuals of the packings of each recipe.
 type Residuals<'a> = [Vec<(&'a Reduced<'a>, [f64; SCATTERED])>];
 
-/// Returns the family of each recipe: recipes of one file share how they are pressed, and so do files that share a recipe.
-fn families(residuals: &Residuals<'_>) -> Vec<String> {
-    let mut of: Vec<BTreeSet<&str>> = residuals
-        .iter()
-        .map(|recipe| recipe.iter().map(|(row, _)| row.sample.file.as_str()).collect())
-        .collect();
-    for _ in 0..of.len() {
-        for i in 0..of.len() {
-            let joined: BTreeSet<&str> =
-                of.iter().filter(|other| !other.is_disjoint(&of[i])).flatten().copied().collect();
-            of[i] = joined;
-        }
+/// Returns the family of each recipe: recipes of one file share how they are pressed, and so do those of files that share a recipe.
+fn families<'a>(rows: &[Reduced<'a>]) -> BTreeMap<&'a str, usize> {
+    let mut of_file: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut of_recipe: BTreeMap<&str, usize> = BTreeMap::new();
+    for row in rows {
+        let next = of_file.len();
+        let family = *of_file.entry(row.sample.file.as_str()).or_insert(next);
+        let known = *of_recipe.entry(row.sample.preparation.as_str()).or_insert(family);
+        // The family of this file is that of the recipe, too.
+        of_file.values_mut().chain(of_recipe.values_mut()).filter(|f| **f == family).for_each(|f| *f = known);
     }
-    of.into_iter().map(|files| files.into_iter().collect::<Vec<_>>().join(" ")).collect()
-}
-
-/// Returns what a recipe of another family adds to the covariance between recipes: families differ by more than their recipes, and the
-/// laws are the mean of few families.
-///
-/// The mean of J families with the covariance S has S/J. The residuals of the recipes contain (J − 1) S/J, a new family has S + S/J
-/// from the mean.
-fn between_families(means: &[Vector], families: &[String]) -> Scatter {
-    let mut all: BTreeMap<&str, Vec<&Vector>> = BTreeMap::new();
-    for (mean, family) in means.iter().zip(families) {
-        all.entry(family.as_str()).or_default().push(mean);
-    }
-    let count = all.len() as f64;
-    if all.len() < 2 {
-        return Scatter::zeros();
-    }
-    let of: Vec<Vector> =
-        all.values().map(|m| m.iter().copied().sum::<Vector>() / m.len() as f64).collect();
-    let middle = of.iter().sum::<Vector>() / count;
-    let squares: Scatter = of.iter().map(|f| (f - middle) * (f - middle).transpose()).sum();
-    squares * (2.0 / count / (count - 1.0))
+    of_recipe
 }
 
 type Vector = nalgebra::SVector<f64, SCATTERED>;
 
 /// The covariances of the residuals in two levels, and how the variances of each group grow with the state.
-fn levels(
-    residuals: &Residuals<'_>,
-    before: ByState,
-    grains: u32,
-) -> Result<Known, CalibrationError> {
+fn levels(residuals: &Residuals<'_>, before: ByState, grains: u32) -> Result<Known, CalibrationError> {
     let mut by_state = before;
     let mut found = [Scatter::zeros(); 2];
     for _ in 0..REPETITIONS_OF_GROWTH {
@@ -265,7 +261,6 @@ fn levels(
 fn two_levels(residuals: &Residuals<'_>, by_state: &ByState, grains: u32) -> [Scatter; 2] {
     let (mut between, mut within, mut of_means) = (Scatter::zeros(), Scatter::zeros(), Scatter::zeros());
     let mut repeated = 0.0;
-    let mut means_of_recipes = Vec::with_capacity(residuals.len());
     for recipe in residuals {
         let mut packings: BTreeMap<&str, Vec<Vector>> = BTreeMap::new();
         // The mean over the packings in the units of recipes, and in those of samples over them.
@@ -274,7 +269,8 @@ fn two_levels(residuals: &Residuals<'_>, by_state: &ByState, grains: u32) -> [Sc
         for (row, residual) in recipe {
             let growth = RelaxationCalibration::growth(by_state, &row.state);
             let [of_recipe, of_sample] = ScatterLevels::weights(row.sample.z);
-            let reduced = |w: &[f64; SCATTERED]| Vector::from_fn(|i, _| residual[i] * w[i] / growth[i].sqrt());
+            let reduced =
+                |w: &[f64; SCATTERED]| Vector::from_fn(|i, _| residual[i] * w[i] / growth[i].sqrt());
             packings.entry(row.sample.packing.as_str()).or_default().push(reduced(&of_sample));
             by_recipe.entry(row.sample.packing.as_str()).or_default().push(reduced(&of_recipe));
             over += Vector::from_fn(|i, _| of_recipe[i] / of_sample[i]) / recipe.len() as f64;
@@ -282,7 +278,8 @@ fn two_levels(residuals: &Residuals<'_>, by_state: &ByState, grains: u32) -> [Sc
         // Sizes of the samples enter by the root of the variance at each size.
         let scale = |packing: &str| {
             let row = recipe.iter().find(|(row, _)| row.sample.packing == packing);
-            let of_size = RelaxationCalibration::sample_variances(grains, row.map(|(row, _)| row.sample.grains));
+            let of_size =
+                RelaxationCalibration::sample_variances(grains, row.map(|(row, _)| row.sample.grains));
             Vector::from(of_size.map(f64::sqrt))
         };
         let mean = |all: &[Vector]| all.iter().sum::<Vector>() / all.len() as f64;
@@ -294,7 +291,6 @@ fn two_levels(residuals: &Residuals<'_>, by_state: &ByState, grains: u32) -> [Sc
         let middle = means.iter().zip(weights.clone()).map(|((m, ..), w)| m * w).sum::<Vector>();
         let of_recipe = by_recipe.values().zip(weights.clone()).map(|(all, w)| mean(all) * w).sum::<Vector>();
         between += of_recipe * of_recipe.transpose();
-        means_of_recipes.push(of_recipe);
         let (mut of_packings, mut of_states) = (Scatter::zeros(), Scatter::zeros());
         let (mut freedom, mut states_of_one) = (0.0, 0.0);
         for (m, scale, states) in &means {
@@ -307,7 +303,7 @@ fn two_levels(residuals: &Residuals<'_>, by_state: &ByState, grains: u32) -> [Sc
             freedom += states.len() as f64 - 1.0;
             states_of_one += states.len() as f64 / means.len() as f64;
         }
-        if means.len() < 2 {
+        if means.len() < 2 || freedom < means.len() as f64 {
             continue;
         }
         of_packings /= means.len() as f64 - 1.0;
@@ -326,8 +322,24 @@ fn two_levels(residuals: &Residuals<'_>, by_state: &ByState, grains: u32) -> [Sc
         return [0.5, 0.5].map(|share| positive(&(between * share), &between));
     }
     within /= repeated;
-    let recipes = between - of_means / repeated + between_families(&means_of_recipes, &families(residuals));
-    [positive(&recipes, &between), positive(&within, &within)]
+    let recipes = positive(&(between - of_means / repeated), &between);
+    let within = positive(&within, &within);
+    [positive(&with_k(&recipes, &within), &recipes), within]
+}
+
+/// The covariance between recipes with the correlations of k of packings of one recipe: a few tens of recipes do not determine them.
+fn with_k(recipes: &Scatter, within: &Scatter) -> Scatter {
+    const K: usize = SCATTERED - 1;
+    let stddev = |level: &Scatter, i: usize| level[(i, i)].sqrt();
+    let mut found = *recipes;
+    for i in 0..K {
+        let correlation = within[(i, K)] / (stddev(within, i) * stddev(within, K));
+        (found[(i, K)], found[(K, i)]) = (
+            correlation * stddev(recipes, i) * stddev(recipes, K),
+            correlation * stddev(recipes, i) * stddev(recipes, K),
+        );
+    }
+    found
 }
 
 /// The growth of the variances of a group with the variance of the radii and with ln p that makes the residuals most probable.

@@ -77,7 +77,7 @@ pub enum Warning {
     SizesUnknown,
     /// The number of grains is not known; that of the packings of the calibration was taken.
     #[error(
-        "the number of grains is not known: the error is that of 200 to 20,000 grains, each number as probable on a logarithmic scale"
+        "the number of grains is not known: the error is that of 100 to 20,000 grains, each number as probable on a logarithmic scale"
     )]
     GrainsUnknown,
     /// An input of the state contributes most of the variance of a quantity.

@@ -32,13 +32,9 @@ fn ours() -> &'static Calibration {
 /// each number, an absolute 1e-12 for those that are zero up to rounding.
 #[test]
 fn the_built_in_calibration_is_learned_from_the_stored_ensembles() {
-    let learned = learn(
-        "grainlab",
-        &csv::samples("isotropic.csv"),
-        &csv::samples("anisotropic.csv"),
-        &csv::others(),
-    )
-    .unwrap();
+    let learned =
+        learn("grainlab", &csv::samples("isotropic.csv"), &csv::samples("anisotropic.csv"), &csv::others())
+            .unwrap();
     written(&learned, "grainlab.toml");
     assert_alike(&learned, ours());
 }

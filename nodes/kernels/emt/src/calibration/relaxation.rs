@@ -20,7 +20,7 @@ const MIN_EXCESS: f64 = 0.05;
 const SHARE_OF_SIZE: [f64; SCATTERED] = [0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 1.0];
 
 /// Range of a number of grains that is not known, uniform in its logarithm: from small simulations to large ones.
-const UNKNOWN_GRAINS: [f64; 2] = [200.0, 20_000.0];
+const UNKNOWN_GRAINS: [f64; 2] = [100.0, 20_000.0];
 
 /// Relative standard deviation of the effect of q/p on the stiffness at unchanged contacts. Packings that were pressed at a low
 /// friction and then sheared at a high one, within the elastic range, have .65 to .85 of the effect in the packings taught
@@ -207,9 +207,10 @@ impl RelaxationCalibration {
                 }
             }
         }
-        for (field, levels) in
-            [("network.scatter.recipe", &self.scatter.recipe), ("network.scatter.sample", &self.scatter.sample)]
-        {
+        for (field, levels) in [
+            ("network.scatter.recipe", &self.scatter.recipe),
+            ("network.scatter.sample", &self.scatter.sample),
+        ] {
             let scatter = Scatter::from_fn(|i, j| levels[i][j]);
             let finite = scatter.iter().all(|v| v.is_finite());
             let lowest = if finite { scatter.symmetric_eigenvalues().min() } else { f64::NAN };
