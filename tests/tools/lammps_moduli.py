@@ -161,7 +161,8 @@ def prepare(s, restart):
     cell.command(f"region box prism 0 {side} 0 {side} 0 {side} 0 0 0", "create_box 1 box",
                  f"create_atoms 1 random {n} {s['packing'] + 1000} NULL overlap {DIAMETER * (1 + width) * 1.001} maxtry 10000000",
                  f"variable d atom {DIAMETER}*(1+{width}*(2*random(0,1,{s['packing'] + 7})-1))",
-                 f"set group all diameter {DIAMETER} density {DENSITY}", "set group all diameter v_d", f"set group all density {DENSITY}")  # fmt: skip
+                 f"set group all diameter {DIAMETER} density {DENSITY}", "set group all diameter v_d",
+                 f"set group all density {DENSITY}")  # fmt: skip
     cell.start(0.0 if paper else mu)
     cell.drag(2e4)
     cell.command("neighbor 4e-5 bin", "fix def all deform 1 " + " ".join(f"{a} final 0 {target}" for a in "xyz") + " remap x",
@@ -280,7 +281,8 @@ def main():
     table, program = Path(sys.argv[1]), sys.argv[2]
     first, last = map(int, sys.argv[3:5] or [0, len(LAWS) - 1])
     if not table.exists():
-        table.write_text("# LAMMPS 22 Jul 2025 (update 4), by tests/tools/lammps_moduli.py: moduli of packings that LAMMPS prepared; see README.md.\n")
+        origin = "LAMMPS 22 Jul 2025 (update 4), by tests/tools/lammps_moduli.py"
+        table.write_text(f"# {origin}: moduli of packings that LAMMPS prepared; see README.md.\n")
     known = [line for line in table.read_text().splitlines() if line[0] != "#"]
     done = {int(row["packing"]) for row in csv.DictReader(known)}
     for number in sorted(set(range(first, last + 1)) - done):
