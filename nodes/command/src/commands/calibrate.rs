@@ -40,9 +40,9 @@ pub(crate) struct Args {
     /// Anisotropic packings, CSV; without them only Eqs. 21 and 22 are fitted, not the model relaxed
     #[arg(long, value_name = "FILE.csv")]
     anisotropic: Option<PathBuf>,
-    /// Packings of other recipes, materials, stresses and sizes, CSV: only for the model relaxed
+    /// Packings of other recipes, materials, stresses and sizes, CSV: only for the model relaxed; repeatable
     #[arg(long, value_name = "FILE.csv", requires = "anisotropic")]
-    other: Option<PathBuf>,
+    other: Vec<PathBuf>,
     /// Columns that identify the recipe of a packing: the laws are tested on each recipe with those learned from
     /// the others [default: scene with a column member, else preparation]
     #[arg(long, value_name = "COLUMN,...", value_delimiter = ',')]
@@ -70,7 +70,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let read = |path: &PathBuf| packings::read(path, recipe, &[&gathered, &stored]);
     let isotropic = read(&args.isotropic)?;
     let anisotropic = args.anisotropic.as_ref().map(read).transpose()?.unwrap_or_default();
-    let other = args.other.as_ref().map(read).transpose()?.unwrap_or_default();
+    let others = args.other.iter().map(read).collect::<Result<Vec<_>, _>>()?;
     let file_name = args.out.as_ref().and_then(|path| path.file_stem()).map(|n| n.to_string_lossy());
     let file_name = file_name.filter(|n| n != "-").map_or_else(|| "unnamed".to_owned(), |n| n.into_owned());
     let name = args.name.clone().unwrap_or(file_name);
@@ -79,6 +79,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         _ => Exit::PhysicsInvalid,
     };
     let invalid = |e| Failure::new(exit(&e), format!("no calibration: {e}"));
+    let other = others.concat();
     check(&isotropic, &anisotropic, &other).map_err(invalid)?;
     let calibration = learn(&name, &isotropic, &anisotropic, &other).map_err(invalid)?;
     let toml = calibration.to_toml().map_err(Failure::failed)?;
@@ -89,10 +90,9 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         format!("; {} = {:.4} +- {stddev:.4}", ["alpha", "beta", "rho", "zeta"][i], values[i])
     };
     say!("grainlab: Eqs. 21 and 22 from {files}{}", (0..4).map(text).collect::<String>());
-    for (path, samples) in [(&args.anisotropic, &anisotropic), (&args.other, &other)] {
-        files +=
-            &path.iter().map(|path| format!("; {}", packings::counted(path, samples))).collect::<String>();
-    }
+    let more = args.anisotropic.iter().zip([&anisotropic]).chain(args.other.iter().zip(&others));
+    files +=
+        &more.map(|(path, samples)| format!("; {}", packings::counted(path, samples))).collect::<String>();
     if let Some(network) = &calibration.network {
         let none = network.dilatation.by_stress_ratio == [0.0; 3];
         let note = if none { "; without q/p, because none is above 1e-5" } else { "" };

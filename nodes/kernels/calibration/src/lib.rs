@@ -16,13 +16,13 @@ mod sample;
 mod student;
 
 pub use discrepancy::discrepancies;
+pub use relaxation::network;
 pub use requirements::{check, packings};
 pub use sample::CalibrationSample;
 
 use grainlab_core::Material;
 use grainlab_emt::{Calibration, CalibrationError};
 use isotropic::of_isotropic;
-use relaxation::network;
 use sample::bounds;
 
 /// Constants from isotropic and from anisotropic packings, all of one material, and from others of any material, stress

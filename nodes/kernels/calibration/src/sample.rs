@@ -24,6 +24,8 @@ pub struct CalibrationSample {
     pub preparation: String,
     /// Name of the packing: states of the same packing at several pressures share it.
     pub packing: String,
+    /// File that it is from: recipes of one file share how they are pressed.
+    pub file: String,
     /// File and line that it is from, for messages.
     pub place: String,
     /// Number of grains.

@@ -6,6 +6,7 @@ use crate::domain::Domain;
 use crate::error::EmtError;
 use crate::moduli::{MODULI, Modulus};
 use crate::observation::Observation;
+use crate::probe::Probe;
 use crate::warning::Warning;
 use grainlab_core::results::{INFERENCE_INPUTS, InferredQuantity, Microstructure};
 
@@ -126,6 +127,7 @@ pub(crate) fn common(
     }
     add(conditions.contact_law.is_none() && !any_contact, Warning::ContactLawAssumed);
     add(compares_state && observation.grains.is_none(), Warning::GrainsUnknown);
+    add(compares_state && observation.probe == Probe::Unknown, Warning::ProbeUnknown);
     if !compares_state {
         for Outside { quantity, value, range, .. } in outside_errors(conditions, calibration) {
             add(true, Warning::StateOutsideFit { quantity, value, range });

@@ -5,7 +5,7 @@
 //! interface. The axis of anisotropy is e3; ε and g = γ/Δ are positive when there are more contacts, or more extension,
 //! along it.
 //!
-//! - `moduli`, `conditions`: what a microstructure is inferred from, and at what state
+//! - `moduli`, `conditions`, `probe`: what a microstructure is inferred from, at what state, and how it was measured
 //! - `observation`, `estimate`, `warning`, `error`: input and output of an inversion
 //! - `model`, `point_estimate`, `domain`: the trait of the models, their result, and their range
 //! - `registry`: the list of the models
@@ -63,6 +63,7 @@ mod point_estimate;
 mod posterior;
 mod prior;
 mod prior_conflict;
+mod probe;
 mod propagation;
 mod random;
 mod registry;
@@ -73,7 +74,7 @@ mod wave_moduli;
 
 pub use calibration::{
     Calibration, CalibrationError, DeviatorLaw, GROUPS, ISOSTATIC, IsotropicCalibration, ModelDiscrepancy,
-    NetworkState, RattlerLaw, Reach, RelaxationCalibration, SCATTERED, ScalingLaw, Scatter,
+    NetworkState, RattlerLaw, Reach, RelaxationCalibration, SCATTERED, ScalingLaw, Scatter, ScatterLevels,
 };
 pub use checks::{ROUNDING, check_structure};
 pub use conditions::{
@@ -95,6 +96,7 @@ pub use observation::{INPUTS, Observation};
 pub use point_estimate::{Jacobian, Misfit, PointEstimate};
 pub use posterior::{Check, Draw, Draws, Evidence, ModulusCheck, Posterior, PosteriorSettings};
 pub use prior::{Density, Prior, PriorError};
+pub use probe::{NoProbe, Probe, ProbeErrors};
 pub use registry::{free_contact, model, models, recommended};
 pub use series::{
     ContactCorrections, ContactKind, ContactPrior, Doubted, Interval, LawEstimate, LeftOut, PreparationPrior,

@@ -3,6 +3,7 @@
 use crate::conditions::{Conditions, Measured, STATE_INPUTS, StrainRatio};
 use crate::error::EmtError;
 use crate::moduli::{MODULI, Moduli, ModuliCovariance, Modulus};
+use crate::probe::Probe;
 use grainlab_core::results::PackingReport;
 use grainlab_core::{Mat3, Material, Stiffness};
 use nalgebra::{SMatrix, SymmetricEigen};
@@ -31,8 +32,10 @@ pub struct Observation {
     /// Relative part of the stiffness that is not isotropic about the axis (Mandel norm); `None` if only the moduli are
     /// known.
     pub asymmetry: Option<f64>,
-    /// Number of grains of the sample, on which the scatter depends; `None` if not known, or very large.
+    /// Number of grains of the sample, on which the scatter depends; `None` if it is unknown.
     pub grains: Option<u32>,
+    /// Whether contacts slid while the moduli were measured.
+    pub probe: Probe,
     /// The modulus that was not measured but follows from the others ([`Observation::checked`]).
     pub derived: Option<Modulus>,
     /// For each modulus, true if its error is so large that it was taken as unknown ([`Observation::checked`]).
@@ -40,7 +43,7 @@ pub struct Observation {
 }
 
 impl Observation {
-    /// Moduli of unknown uncertainty.
+    /// Creates an observation of moduli of unknown uncertainty. Set [`Observation::probe`] if contacts may have slid.
     pub const fn new(moduli: Moduli, conditions: Conditions) -> Self {
         Self {
             moduli,
@@ -48,6 +51,7 @@ impl Observation {
             conditions,
             asymmetry: None,
             grains: None,
+            probe: Probe::Sticking,
             derived: None,
             taken_as_unknown: [false; MODULI],
         }

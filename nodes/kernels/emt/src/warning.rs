@@ -3,6 +3,7 @@
 use crate::digits::{apart, of_quantity};
 use crate::moduli::Modulus;
 use crate::observation::UNKNOWN_ERROR;
+use crate::probe::UNKNOWN_PROBE;
 use grainlab_core::results::InferredQuantity;
 
 /// A limitation of an estimate.
@@ -75,11 +76,17 @@ pub enum Warning {
         "the spread of the grain sizes is not known: any from 0 to 0.3 is equally probable, in value and error"
     )]
     SizesUnknown,
-    /// The number of grains is not known; that of the packings of the calibration was taken.
+    /// The number of grains is not known; the scatter is the mean over a range of numbers.
     #[error(
-        "the number of grains is not known: the error has the scatter of samples of 2000 grains; that of fewer is larger"
+        "the number of grains is not known: the error is that of 100 to 20,000 grains, each number as probable on a logarithmic scale"
     )]
     GrainsUnknown,
+    /// Contacts may have slid while the moduli were measured; [`crate::Probe::Unknown`] adds its errors.
+    #[error(
+        "contacts may have slid while the moduli were measured: standard deviations of {} in z, {} in k and {} in eps are added",
+        UNKNOWN_PROBE.z, UNKNOWN_PROBE.k, UNKNOWN_PROBE.eps
+    )]
+    ProbeUnknown,
     /// An input of the state contributes most of the variance of a quantity.
     #[error("{input} widens most: {:.0} % of the variance of {quantity} is due to it", 100.0 * share)]
     WidenedMost {
@@ -318,6 +325,15 @@ pub enum Warning {
         /// The modulus furthest from its prediction by the others, and the difference in standard deviations.
         worst: (Modulus, f64),
     },
+    /// The moduli fit no structure of the calibration's packings well.
+    #[error(
+        "the moduli fit the calibration's packings badly (p = {probability:.1e}): the sample is of another kind, or the errors are \
+         larger than given; do not rely on the stated errors"
+    )]
+    Unlike {
+        /// Probability of a larger χ², or of a modulus further from its prediction by the others.
+        probability: f64,
+    },
     /// The moduli are improbable under the posterior, although their χ² about the estimate is ordinary.
     #[error(
         "the moduli are improbable under the posterior (p = {probability:.0e}): the sample is unlike the packings of the \
@@ -366,6 +382,7 @@ impl Warning {
                 | Warning::StressRatioUnknown
                 | Warning::SizesUnknown
                 | Warning::GrainsUnknown
+                | Warning::ProbeUnknown
                 | Warning::WidenedMost { .. }
                 | Warning::ContactLawAssumed
                 | Warning::ContactsInferred { .. }

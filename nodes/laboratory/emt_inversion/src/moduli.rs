@@ -71,7 +71,8 @@ pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<
     let known = [reading.g12, reading.g13, reading.theta];
     let [g12, g13, theta] = known;
     let moduli = Moduli::of_values([g12, g13, theta, None, None, None]);
-    let observation = Observation { grains: reading.grains, ..Observation::new(moduli, conditions) };
+    let observation =
+        Observation { grains: reading.grains, probe: settings.probe, ..Observation::new(moduli, conditions) };
     Ok(match reading.covariance {
         None => with_error(observation, settings.modulus_error).into(),
         Some(c) => {

@@ -1,7 +1,7 @@
 //! The parameters of the node.
 
 use grainlab_core::Vec3;
-use grainlab_emt::{Calibration, Model, StrainRatioSource};
+use grainlab_emt::{Calibration, Model, Probe, StrainRatioSource};
 use grainlab_node_kit::{ParameterSpec, Parameters, Range, parameters};
 
 /// The parameters of the node.
@@ -20,6 +20,9 @@ pub fn parameters() -> Vec<ParameterSpec> {
              about that one, those about e3 are transformed if the full stiffness is known";
         "gamma_over_delta" "total", Range::Choice(&["total", "elastic", "contact", "zero"]),
             "measured strain ratio that the models use; if it is not known, contact, else zero";
+        "probe" "unknown", Range::Choice(&["sticking", "unknown"]),
+            "whether contacts slid while the Moduli received were measured: sticking if none did; unknown widens z, k and eps of \
+             relaxed and free-contact. In packings and in wave speeds no contact slides";
         "modulus_error" Settings::default().modulus_error, Range::Double { min: 0.0, max: 1.0 }, error;
     }
 }
@@ -44,6 +47,8 @@ pub struct Settings {
     /// The measured strain ratio γ/Δ that the models use. The paper uses the total one, which is mostly
     /// plastic history; Eq. 10 of the paper refers to the one fitted to the contacts.
     pub gamma: StrainRatioSource,
+    /// Whether contacts slid while the moduli of an instrument were measured.
+    pub probe: Probe,
     /// Relative one-sigma error, independent for each measured modulus, if the data have no error. With 0 the
     /// uncertainty of the estimates is unknown.
     pub modulus_error: f64,
@@ -72,6 +77,7 @@ impl Default for Settings {
             calibration: None,
             axis: Axis::Stated,
             gamma: StrainRatioSource::Total,
+            probe: Probe::Unknown,
             modulus_error: 0.01,
         }
     }
@@ -102,6 +108,7 @@ impl Settings {
                 "zero" => StrainRatioSource::Zero,
                 _ => StrainRatioSource::Total,
             },
+            probe: if text("probe") == Probe::Sticking.name() { Probe::Sticking } else { Probe::Unknown },
             modulus_error: parameters.get("modulus_error"),
         })
     }

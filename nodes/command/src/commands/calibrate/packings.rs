@@ -23,7 +23,7 @@ pub(super) fn read(path: &Path, recipe: usize, by: &[&[String]]) -> Result<Vec<C
     }
     let (mut samples, mut bad) = (Vec::new(), 0);
     let work = |number: u64, row: Result<Row, BadRow>| match row {
-        Ok(row) => sample(&row, recipe, format!("{}, line {number}", path.display()))
+        Ok(row) => sample(&row, recipe, path, number)
             .and_then(|sample| sample.check().map(|()| sample).map_err(|e| e.to_string()))
             .map_err(|fault| format!("line {number}: {fault}")),
         Err(row) => Err(format!("line {number}: {}", row.fault)),
@@ -63,7 +63,7 @@ fn without_pressure(member: &str) -> String {
 }
 
 /// The first `preparation` cells grouped by identify the preparation, those after them the packing.
-fn sample(row: &Row, preparation: usize, place: String) -> Result<CalibrationSample, String> {
+fn sample(row: &Row, preparation: usize, path: &Path, line: u64) -> Result<CalibrationSample, String> {
     let State { moduli, truth, conditions, grains, grain_shear_modulus, poisson, .. } = &row.state;
     let Conditions { pressure, solid_fraction, stress_ratio, size_spread, contact_law, smooth, .. } =
         conditions;
@@ -94,7 +94,8 @@ fn sample(row: &Row, preparation: usize, place: String) -> Result<CalibrationSam
     Ok(CalibrationSample {
         preparation: preparation.join(" "),
         packing: without_pressure(&packing.join(" ")),
-        place,
+        file: path.display().to_string(),
+        place: format!("{}, line {line}", path.display()),
         grains: need(*grains, "grains")? as u32,
         material: Material {
             shear_modulus: grain_shear_modulus.unwrap_or(Material::GLASS.shear_modulus),

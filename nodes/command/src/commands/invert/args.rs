@@ -10,7 +10,7 @@ use super::speeds;
 use super::state::State;
 use crate::commands::packings::import::in_range;
 use grainlab_console::{Failure, Format};
-use grainlab_emt::{Conditions, Measured, Modulus};
+use grainlab_emt::{Conditions, Measured, Modulus, Probe};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -142,9 +142,13 @@ pub(crate) struct Args {
     /// the other models]
     #[arg(long, value_name = "SPREAD", conflicts_with = "table")]
     pub(super) size_spread: Option<f64>,
-    /// Number of grains of the sample, which its scatter depends on [default: unknown, taken as 2000]
+    /// Number of grains of the sample [default: unknown, any from 100 to 20,000 in the errors of relaxed]
     #[arg(long, value_name = "N", conflicts_with = "table", value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) grains: Option<u32>,
+    /// Whether contacts slid while the moduli were measured: sticking if none did, as in a small strain at high friction; unknown
+    /// widens z, k and eps of relaxed and free-contact [default: unknown; sticking for speeds, and tables of grainlab analyze]
+    #[arg(long, value_name = "PROBE", conflicts_with_all = ["speeds", "plan"])]
+    pub(super) probe: Option<Probe>,
     /// Relative one-sigma error of each modulus without its own error, and of each speed without speed_sigma: 0.01 is one percent
     /// [default: unknown; 0.01 for speeds whose contacts are not known]
     #[arg(long, value_name = "REL")]
@@ -254,6 +258,7 @@ impl Args {
         }
         Ok(State {
             relative_error: self.error,
+            probe: self.probe,
             grain_shear_modulus: self.grain_shear_modulus,
             poisson: self.poisson,
             conditions: Conditions {

@@ -7,7 +7,7 @@ use csv::{ReaderBuilder, StringRecord, Terminator};
 use grainlab_console::separated;
 use grainlab_core::results::QUANTITIES;
 use grainlab_core::{Stiffness, Vec3};
-use grainlab_emt::{Moduli, Modulus, check_structure};
+use grainlab_emt::{Moduli, Modulus, Probe, check_structure};
 use std::io::Read as _;
 use std::sync::LazyLock;
 
@@ -18,8 +18,8 @@ const SAME: f64 = 1e-3;
 const LONGEST: usize = 1 << 20;
 
 /// Columns that describe a row, and set no number of its state.
-const LABELS: [&str; 8] =
-    ["contact_law", "smooth", "axis_found", "friction", "sample", "source", "member", "step"];
+const LABELS: [&str; 9] =
+    ["contact_law", "probe", "smooth", "axis_found", "friction", "sample", "source", "member", "step"];
 
 /// Positions of the inputs in a row. Other columns are ignored.
 pub(crate) struct Columns {
@@ -33,6 +33,8 @@ pub(crate) struct Columns {
     reference_axis: Option<[usize; 3]>,
     /// True if the moduli have the names of the projection that `grainlab analyze` prints.
     projected: bool,
+    /// True if the columns are those of `grainlab analyze` or `grainlab probe`, in which no contact slides.
+    is_ours: bool,
     /// The columns of [`LABELS`] that are there.
     labels: Vec<(&'static str, usize)>,
     group: Vec<usize>,
@@ -116,9 +118,14 @@ impl Columns {
         let group = by
             .iter()
             .map(|name| find(name)?.ok_or_else(|| format!("no column {name} to group by; {}", there())));
+        if defaults.probe.is_some() && labels.iter().any(|(name, _)| *name == "probe") {
+            return Err("--probe contradicts the column probe: leave one of them out".to_owned());
+        }
+        let is_projection = find("ti_c11_pa")?.is_some();
         Ok(Self {
             inputs,
-            projected: stiffness.is_some() || find("ti_c11_pa")?.is_some(),
+            projected: stiffness.is_some() || is_projection,
+            is_ours: is_projection || find("axis_found")?.is_some(),
             stiffness,
             reference_axis: axis_columns(&find)?,
             labels,
@@ -203,6 +210,11 @@ impl Columns {
         if let Some(text) = self.label(cells, "contact_law").filter(|text| !text.is_empty()) {
             state.conditions.contact_law =
                 Some(text.parse().map_err(|e| format!("column contact_law: {e}"))?);
+        }
+        if let Some(text) = self.label(cells, "probe").filter(|text| !text.is_empty()) {
+            state.probe = Some(text.parse().map_err(|e| format!("column probe: {e}"))?);
+        } else if self.is_ours && state.probe.is_none() {
+            state.probe = Some(Probe::Sticking);
         }
         let smooth = flag(self.label(cells, "smooth"), "smooth")?;
         let friction = self.label(cells, "friction").and_then(|text| text.parse().ok());
@@ -384,7 +396,7 @@ fn entries() -> Vec<String> {
 /// Entries of a stiffness, columns that are read, and columns that an analysis prints.
 static NAMES: LazyLock<(Vec<String>, Vec<&str>, Vec<String>)> = LazyLock::new(|| {
     let of_inputs = INPUTS.iter().flat_map(Input::names).map(|alias| alias.name);
-    let others = ["contact_law", "smooth", "axis_found"];
+    let others = ["contact_law", "probe", "smooth", "axis_found"];
     let axis = ["reference_axis_x", "reference_axis_y", "reference_axis_z"];
     let read = of_inputs.chain(others).chain(axis).collect();
     (entries(), read, QUANTITIES.iter().flat_map(|q| q.columns()).collect())

@@ -3,7 +3,7 @@
 use super::state::State;
 use grainlab_core::quantity::{Alias, by_key};
 use grainlab_core::results::{InferredQuantity, QUANTITIES};
-use grainlab_emt::{Measured, Modulus};
+use grainlab_emt::{Measured, Modulus, Probe};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::sync::LazyLock;
 
@@ -156,9 +156,10 @@ pub(super) fn reference() -> String {
         format!("  {:<34} {}\n", names.join(", "), input.meaning())
     };
     let law = "  contact_law                        hertz_mindlin, or linear:KN,RATIO or rough:SQ,FACTOR, of which only --model free-contact has an estimate\n";
+    let probe = "  probe                              sticking if no contact slid while the moduli were measured, else unknown (see --probe)\n";
     let smooth = "  smooth                             true: the stiffness is without tangential springs, which no model can invert\n";
     let axis = "  axis_found                         of grainlab probe: false if no axis stood out in the speeds, which is noted\n";
-    INPUTS.iter().map(line).chain([law, smooth, axis].map(str::to_owned)).collect()
+    INPUTS.iter().map(line).chain([law, probe, smooth, axis].map(str::to_owned)).collect()
 }
 
 /// The inputs given, with the standard deviations in force.
@@ -170,6 +171,7 @@ impl Serialize for State {
             map.serialize_entry(input.key, &input.get(self))?;
         }
         map.serialize_entry("contact_law", &self.conditions.contact_law.map(|law| law.to_string()))?;
+        map.serialize_entry("probe", &self.probe.map(Probe::name))?;
         map.serialize_entry("asymmetry", &self.asymmetry)?;
         map.serialize_entry("relative_error", &self.relative_error)?;
         map.end()

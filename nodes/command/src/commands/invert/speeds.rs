@@ -5,7 +5,7 @@ use super::state::State;
 use grainlab_console::Failure;
 use grainlab_core::{Vec3, WaveSpeed};
 use grainlab_emt::christoffel::moduli_from_speeds;
-use grainlab_emt::{Conditions, Measured};
+use grainlab_emt::{Conditions, Measured, Probe};
 use grainlab_emt_inversion::notes_on_fit;
 use grainlab_node_kit::Exit;
 
@@ -58,6 +58,8 @@ pub(super) fn add(
     state.notes = notes_on_fit(&fitted, speeds.len(), |at| format!("that of line {}", lines[at].line));
     state.notes.extend(in_radians(lines));
     state.in_conflict = fitted.conflict.is_some();
+    // Waves are elastic.
+    state.probe = Some(Probe::Sticking);
     state.moduli = fitted.observation.moduli;
     state.full_covariance = fitted.observation.covariance;
     Ok(())

@@ -6,7 +6,7 @@ use grainlab_core::results::Microstructure;
 use grainlab_core::results::StrainRatios;
 use grainlab_emt::{
     Calibration, Conditions, EmtError, Estimate, Measured, Moduli, ModuliCovariance, Modulus, Observation,
-    Posterior, PosteriorSettings, StrainRatio, StrainRatioSource,
+    Posterior, PosteriorSettings, Probe, StrainRatio, StrainRatioSource,
 };
 
 /// One state, as given.
@@ -35,6 +35,8 @@ pub(crate) struct State {
     /// Shear modulus of the grains, Pa.
     pub(crate) grain_shear_modulus: Option<f64>,
     pub(crate) poisson: Option<f64>,
+    /// Whether contacts slid while the moduli were measured; `None` if nothing is stated.
+    pub(crate) probe: Option<Probe>,
     /// Notes on the data, for every estimate.
     pub(crate) notes: Vec<String>,
     /// True if the data contradict each other, as the notes say.
@@ -111,7 +113,8 @@ impl State {
         let covariance = self.covariance(&moduli);
         let observation = Observation::new(moduli, conditions);
         let grains = self.grains.map(|n| n as u32);
-        Ok(Observation { asymmetry: self.asymmetry, grains, covariance, ..observation })
+        let probe = self.probe.unwrap_or(Probe::Unknown);
+        Ok(Observation { asymmetry: self.asymmetry, grains, probe, covariance, ..observation })
     }
 
     /// The source of the γ/Δ that a model uses or would use.

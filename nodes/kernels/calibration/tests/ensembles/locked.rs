@@ -28,6 +28,40 @@ fn intervals_of_eps_contain_the_count_of_packings_sheared_without_sliding() {
     covers("locked.csv", "relaxed", &[InferredQuantity::Eps], observed, 95);
 }
 
+/// Prints the errors of rough packings beyond their posterior, by file and recipe.
+#[test]
+fn zz_beyond() {
+    use grainlab_emt::Model as _;
+    let quantities = [InferredQuantity::Z, InferredQuantity::Eps, InferredQuantity::EpsStiffness];
+    let model = grainlab_emt::free_contact();
+    for file in ["wide.csv", "recipes.csv", "anisotropic.csv", "sheared_rough.csv"] {
+        let mut by: std::collections::BTreeMap<String, Vec<[(f64, f64); 3]>> = Default::default();
+        for s in csv::samples(file) {
+            let factor = if file == "sheared_rough.csv" { 0.7 } else { 1.0 };
+            let springs = SpringLaw::Rough(Rough { roughness: 1e-9, tangential_factor: factor });
+            let mut o = s.observation(StrainRatioSource::Zero);
+            o.conditions.contact_law = Some(ContactLaw { springs, ..ContactLaw::default() });
+            let Ok(e) = model.infer(&o, ours()) else { continue };
+            by.entry(s.preparation.clone())
+                .or_default()
+                .push(quantities.map(|q| (e.structure.get(q).unwrap() - truth(&s, q), e.stddev(q).unwrap())));
+        }
+        let mut all = Vec::new();
+        for (name, found) in by.iter().chain([(&"ALL".to_owned(), &Vec::new())]) {
+            all.extend(found.iter().copied());
+            let found = if name == "ALL" { &all } else { found };
+            let n = found.len() as f64;
+            let f = [0, 1, 2].map(|i| {
+                let (mean, sq, st) = found.iter().fold((0.0, 0.0, 0.0), |(a, b, c), f| {
+                    (a + f[i].0 / n, b + f[i].0 * f[i].0 / n, c + f[i].1 * f[i].1 / n)
+                });
+                format!("{mean:+.4} {:.4} {:.4}", sq.sqrt(), st.sqrt())
+            });
+            eprintln!("{file:20} {name:22} {:4} {}", found.len(), f.join("   "));
+        }
+    }
+}
+
 /// Prints how often the intervals of quantities contain their counts in the samples of a table, %, and asks for `least`.
 fn covers(
     table: &str,

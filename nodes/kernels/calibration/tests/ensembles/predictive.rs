@@ -1,6 +1,6 @@
 //! Posterior predictive probabilities of observed moduli: packings of recipes that taught nothing, and the rows of the paper.
 
-use crate::left_out::by_recipe;
+use crate::left_out::by_file;
 use crate::{csv, ours};
 use grainlab_emt::{
     Calibration, Check, EmtError, ModulusCheck, Observation, Posterior, PosteriorSettings, Prior, Relaxed,
@@ -23,7 +23,7 @@ fn least(check: &Check) -> f64 {
 #[test]
 fn few_packings_of_recipes_that_taught_nothing_are_improbable() {
     let (mut all, mut unlikely, mut known) = (Vec::new(), 0, BTreeSet::new());
-    for (packings, calibration) in by_recipe() {
+    for (packings, calibration) in by_file() {
         for s in packings {
             // States of one packing are not independent.
             if !known.insert(&s.packing) || !known.len().is_multiple_of(nightly(3, 1)) {

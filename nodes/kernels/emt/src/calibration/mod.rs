@@ -19,4 +19,4 @@ pub use laws::{DeviatorLaw, ISOSTATIC, NetworkState, RattlerLaw, ScalingLaw};
 pub(crate) use reach::Outside;
 pub use reach::Reach;
 pub(crate) use relaxation::RESPONSE_STDDEV;
-pub use relaxation::{GROUPS, RelaxationCalibration, SCATTERED, Scatter};
+pub use relaxation::{GROUPS, RelaxationCalibration, SCATTERED, Scatter, ScatterLevels};

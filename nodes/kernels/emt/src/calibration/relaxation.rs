@@ -15,10 +15,12 @@ use std::ops::Range;
 /// isostatic point.
 const MIN_EXCESS: f64 = 0.05;
 
-/// Least and largest share of the variance of packings of 2,000 grains that is due to their size: packings of 8,000 grains by
-/// the same recipes (`tests/golden/ensembles/large.csv`) have .67 (ε) to .55 (ε weighted by stiffness) of the variance, and
-/// would have a quarter if all of it were.
-const OF_THE_SAMPLE: [f64; 2] = [0.45, 0.6];
+/// Share of the variance between samples of one recipe that is inverse to the number of grains: moduli and ε weighted by stiffness, and
+/// k. `tests/ensembles` of `grainlab_calibration` fits it.
+const SHARE_OF_SIZE: [f64; SCATTERED] = [0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 1.0];
+
+/// Range of a number of grains that is not known, uniform in its logarithm: from small simulations to large ones.
+const UNKNOWN_GRAINS: [f64; 2] = [100.0, 20_000.0];
 
 /// Relative standard deviation of the effect of q/p on the stiffness at unchanged contacts. Packings that were pressed at a low
 /// friction and then sheared at a high one, within the elastic range, have .65 to .85 of the effect in the packings taught
@@ -31,14 +33,43 @@ pub const SCATTERED: usize = 7;
 /// The scattered quantities whose scatter changes alike with the state: scalars, deviators with the ε weighted by stiffness, k.
 pub const GROUPS: [Range<usize>; 3] = [0..2, 2..6, 6..7];
 
-/// Covariance of the scatter of packings with the same structure.
+/// Covariance of (ln Θ, ln G, D, V, H, ε weighted by stiffness, k) of packings with the same structure.
 pub type Scatter = SMatrix<f64, SCATTERED, SCATTERED>;
+
+/// How far packings are from the laws, in two levels.
+///
+/// The covariances are those of residuals from laws that were learned without the recipe of the packing, at the reference state;
+/// row-major. A residual of a level is first multiplied by its weight at z, see [`ScatterLevels::weights`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScatterLevels {
+    /// Covariance between recipes, the same in samples of any size.
+    pub recipe: [[f64; SCATTERED]; SCATTERED],
+    /// Covariance between samples of [`RelaxationCalibration::grains`] grains of one recipe.
+    pub sample: [[f64; SCATTERED]; SCATTERED],
+}
+
+impl ScatterLevels {
+    /// Weights of the residuals at this z, of recipes and of samples.
+    ///
+    /// Fluctuations of a sample grow towards the isostatic point as z/(z − 4), and so do those of the deviators of a recipe. The bulk
+    /// and the shear modulus of a recipe are off by the same factor at any z.
+    pub fn weights(z: f64) -> [[f64; SCATTERED]; 2] {
+        let w = RelaxationCalibration::excess(z);
+        [[1.0, 1.0, w, w, w, w, 1.0], [w, w, w, w, w, w, 1.0]]
+    }
+
+    /// The levels as matrices.
+    pub fn matrices(&self) -> [Scatter; 2] {
+        [self.recipe, self.sample].map(|level| Scatter::from_fn(|i, j| level[i][j]))
+    }
+}
 
 /// Constants of the model `relaxed`, for moduli in units of E*^⅔ p^⅓, the scaling of Hertz contacts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RelaxationCalibration {
-    /// Number of grains of each packing: the scatter is that of samples of this size.
+    /// Median number of grains of the packings: [`ScatterLevels::sample`] is that of samples of this size.
     pub grains: u32,
     /// Number of recipes, each left out in turn to find the scatter.
     pub recipes: u32,
@@ -47,11 +78,10 @@ pub struct RelaxationCalibration {
     /// Law of k.
     pub rattlers: RattlerLaw,
     /// h0 and h1 of the two scalars, of the deviators with the ε weighted by stiffness, and of k: the variance of their
-    /// scatter is multiplied by exp(h0 s² + h1 ln p), with s² the variance of the radii.
+    /// scatter is multiplied by (1 + h0 s²) exp(h1 ln p), with s² the variance of the radii.
     pub scatter_by_state: [[f64; 2]; GROUPS.len()],
-    /// Covariance of (ln Θ, ln G, D, V, H, ε weighted by stiffness, k) of packings of the same z, ε and state, left out by
-    /// their recipes, all but k multiplied by (z − 4)/z; row-major.
-    pub scatter: [[f64; SCATTERED]; SCATTERED],
+    /// Scatter of packings about the laws.
+    pub scatter: ScatterLevels,
     /// Ranges of the packings.
     pub reach: Reach,
     /// Law of the dilatational deviator.
@@ -93,49 +123,59 @@ impl RelaxationCalibration {
         ((z - ISOSTATIC) / z).max(MIN_EXCESS)
     }
 
-    /// By what the residual of each scattered quantity is multiplied at this z.
-    pub fn weights(z: f64) -> [f64; SCATTERED] {
-        let w = Self::excess(z);
-        [w, w, w, w, w, w, 1.0]
-    }
-
     /// Factors of the variances of the scatter in this state.
     pub fn growth(by_state: &[[f64; 2]; GROUPS.len()], state: &NetworkState) -> [f64; SCATTERED] {
         let mut factors = [1.0; SCATTERED];
-        for (group, [by_sizes, by_pressure]) in GROUPS.into_iter().zip(by_state) {
-            factors[group].fill((by_sizes * state.size_variance + by_pressure * state.ln_pressure).exp());
+        for (group, growth) in GROUPS.into_iter().zip(by_state) {
+            factors[group].fill(Self::growth_of(*growth, state.size_variance, state.ln_pressure));
         }
         factors
     }
 
-    /// Covariance of the scatter at this z, with the variance of each quantity multiplied by its factor.
-    pub(crate) fn scatter_at(&self, z: f64, factors: &[f64; SCATTERED]) -> Scatter {
-        let w = Self::weights(z);
-        Scatter::from_fn(|i, j| self.scatter[i][j] * (factors[i] * factors[j]).sqrt() / (w[i] * w[j]))
+    /// Factor of a variance by h0 and h1.
+    pub fn growth_of([by_sizes, by_pressure]: [f64; 2], size_variance: f64, ln_pressure: f64) -> f64 {
+        (1.0 + by_sizes * size_variance) * (by_pressure * ln_pressure).exp()
     }
 
-    /// Covariance of the scatter at this z in this state: under a deviator, with that of its effect.
-    pub(crate) fn scatter_in(&self, z: f64, factors: &[f64; SCATTERED], state: &NetworkState) -> Scatter {
+    /// Factors of the variances of [`ScatterLevels::sample`] for samples of another size; an unknown size has the mean over
+    /// [`UNKNOWN_GRAINS`].
+    ///
+    /// The rest of the variance is due to other differences between samples of one recipe, and is the same at any size.
+    pub fn sample_variances(grains: u32, of: Option<u32>) -> [f64; SCATTERED] {
+        let [low, high] = UNKNOWN_GRAINS;
+        let inverse = of.map_or((1.0 / low - 1.0 / high) / (high / low).ln(), |n| 1.0 / f64::from(n.max(1)));
+        SHARE_OF_SIZE.map(|share| 1.0 - share + share * f64::from(grains) * inverse)
+    }
+
+    /// Returns the levels of the scatter of samples of so many grains, with the variance of each quantity multiplied by its factor of the
+    /// state.
+    pub(crate) fn scatter_of(&self, grains: Option<u32>, by_state: &[f64; SCATTERED]) -> [Scatter; 2] {
+        let of_size = Self::sample_variances(self.grains, grains);
+        let [recipe, sample] = self.scatter.matrices();
+        let scaled = |level: &Scatter, by: &[f64; SCATTERED]| {
+            Scatter::from_fn(|i, j| level[(i, j)] * (by[i] * by[j]).sqrt())
+        };
+        [scaled(&recipe, by_state), scaled(&scaled(&sample, &of_size), by_state)]
+    }
+
+    /// Returns the covariance at this z, by its levels.
+    pub(crate) fn at_z(z: f64, levels: &[Scatter; 2]) -> Scatter {
+        let [of_recipe, of_sample] = ScatterLevels::weights(z);
+        let [recipe, sample] = levels;
+        Scatter::from_fn(|i, j| {
+            recipe[(i, j)] / (of_recipe[i] * of_recipe[j]) + sample[(i, j)] / (of_sample[i] * of_sample[j])
+        })
+    }
+
+    /// Returns the covariance at this z in this state, by its levels: under a deviator, with that of its effect.
+    pub(crate) fn scatter_in(&self, z: f64, levels: &[Scatter; 2], state: &NetworkState) -> Scatter {
         let mut by_stress = SVector::<f64, SCATTERED>::zeros();
         for (i, law) in
             [&self.dilatation, &self.voigt, &self.harmonic, &self.eps_stiffness].into_iter().enumerate()
         {
             by_stress[2 + i] = RESPONSE_STDDEV * law.by_stress_ratio(z, state) * state.stress_ratio;
         }
-        self.scatter_at(z, factors) + by_stress * by_stress.transpose()
-    }
-
-    /// Variances of the scatter of samples of this size over those of the packings. Only the share that is due to the size of the
-    /// sample changes as the inverse of the number of grains, and none of that of k in larger samples: differences between
-    /// recipes remain at any size. The share is that with the larger variance.
-    pub(crate) fn variance_factors(&self, grains: Option<u32>) -> [f64; SCATTERED] {
-        // A sample of unknown size counts as the packings.
-        let ratio = grains.map_or(1.0, |n| f64::from(self.grains) / f64::from(n.max(1)));
-        let [least, largest] = OF_THE_SAMPLE;
-        let share = if ratio > 1.0 { largest } else { least };
-        let moduli = 1.0 - share + share * ratio;
-        let k = moduli.max(1.0);
-        [moduli, moduli, moduli, moduli, moduli, moduli, k]
+        Self::at_z(z, levels) + by_stress * by_stress.transpose()
     }
 
     /// Conditions for a unique inversion: moduli that rise with z, a stiff network, and a valid covariance of
@@ -167,11 +207,16 @@ impl RelaxationCalibration {
                 }
             }
         }
-        let scatter = Scatter::from_fn(|i, j| self.scatter[i][j]);
-        let finite = scatter.iter().all(|v| v.is_finite());
-        let lowest = if finite { scatter.symmetric_eigenvalues().min() } else { f64::NAN };
-        let symmetric = scatter == scatter.transpose();
-        let valid = symmetric && lowest > 0.0;
-        constant("network.scatter", lowest, valid, "it must be a covariance, of positive eigenvalues")
+        for (field, levels) in [
+            ("network.scatter.recipe", &self.scatter.recipe),
+            ("network.scatter.sample", &self.scatter.sample),
+        ] {
+            let scatter = Scatter::from_fn(|i, j| levels[i][j]);
+            let finite = scatter.iter().all(|v| v.is_finite());
+            let lowest = if finite { scatter.symmetric_eigenvalues().min() } else { f64::NAN };
+            let valid = scatter == scatter.transpose() && lowest > 0.0;
+            constant(field, lowest, valid, "it must be a covariance, of positive eigenvalues")?;
+        }
+        Ok(())
     }
 }

@@ -13,6 +13,7 @@ use crate::model::Model;
 use crate::moduli::{Moduli, Modulus};
 use crate::observation::Observation;
 use crate::point_estimate::{Jacobian, PointEstimate};
+use crate::probe::Probe;
 use crate::series::{Interval, SeriesPrior, SeriesRow, SingleEstimate, SpeedMode, SpeedSeries};
 use crate::warning::Warning;
 use grainlab_core::Material;
@@ -37,7 +38,7 @@ const EXACT: f64 = 1e-3;
 
 /// Errors of z, ε and ε_k beyond the posterior for rough grains: those of the prior were pressed, and packings that were also sheared
 /// have z inferred .12 too low (campaign `sheared_rough`).
-const SHEARED_ROUGH: [f64; 3] = [0.1, 0.021, 0.011];
+const SHEARED_ROUGH: [f64; 3] = [0.0, 0.0, 0.0];
 
 /// Number of times that the stiffness of Hertz contacts is adapted to moduli of linear springs. Each one changes ln E* by a tenth of the
 /// change before, because z over pressure depends on it little.
@@ -106,7 +107,7 @@ impl Model for FreeContact {
             return Err(super::relaxed::too_far(far, calibration.name()));
         }
         let found = SingleEstimate::of(&series(observation, material)?, network, &prior)?;
-        Ok(point_estimate(&found, conditions, &outside, network.reach.z[0]))
+        Ok(point_estimate(&found, (conditions, observation.probe), &outside, network.reach.z[0]))
     }
 
     fn likelihood<'a>(
@@ -179,7 +180,7 @@ fn series(observation: &Observation, material: Material) -> Result<SpeedSeries, 
 
 fn point_estimate(
     found: &SingleEstimate,
-    conditions: &Conditions,
+    (conditions, probe): (&Conditions, Probe),
     outside: &[Outside],
     lowest: f64,
 ) -> PointEstimate {
@@ -189,10 +190,12 @@ fn point_estimate(
     let mut structure = Microstructure::default();
     let mut covariance = MicrostructureCovariance::zeros();
     let mut bounds = [None; InferredQuantity::COUNT];
+    let of_probe = probe.errors().map_or([0.0; 3], |errors| [errors.z, errors.eps, errors.eps]);
     let is_rough = conditions.contact_law.is_some_and(|law| law.springs.name() == "rough");
     for (i, a) in named[..used].iter().enumerate() {
         let of = &found.marginals[i];
-        let beyond = if is_rough { SHEARED_ROUGH[i] } else { 0.0 };
+        let of_rough = if is_rough { SHEARED_ROUGH[i] } else { 0.0 };
+        let beyond = of_rough.hypot(of_probe[i]);
         let wider = of.stddev.hypot(beyond) / of.stddev;
         structure = structure.with(*a, of.mean);
         bounds[*a as usize] = Some([of.low, of.high].map(|end| of.mean + wider * (end - of.mean)));

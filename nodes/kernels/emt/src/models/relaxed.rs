@@ -25,6 +25,7 @@ use crate::moduli::{Moduli, Modulus};
 use crate::normal;
 use crate::observation::Observation;
 use crate::point_estimate::{Misfit, PointEstimate};
+use crate::probe::Probe;
 use crate::warning::Warning;
 use fit::{Data, Fit};
 use grainlab_core::results::{InferredQuantity, Microstructure};
@@ -40,6 +41,9 @@ const NAME: &str = "relaxed";
 
 /// Standard deviation of ε above which ε counts as undetermined: larger than the ε of any packing.
 const UNDETERMINED: f64 = 0.2;
+
+/// Probability of the misfit below which an estimate is not `ok`: the laws, and the stated errors with them, are of other packings.
+const UNLIKE: f64 = 0.01;
 
 impl Model for Relaxed {
     fn name(&self) -> &'static str {
@@ -79,7 +83,7 @@ impl Model for Relaxed {
         let material = conditions.material.as_ref().unwrap_or(calibration.material());
         domain.validate_pressure(conditions.pressure.value, material.effective_young())?;
         let [z, eps] = [InferredQuantity::Z, InferredQuantity::Eps].map(|q| found[q as usize]);
-        let state = State::of(conditions, None, network, calibration);
+        let state = State::of(conditions, (None, Probe::Sticking), network, calibration);
         let moduli = state.invariants(network, z, eps).moduli().map(|m| m * state.unit);
         for (modulus, value) in Modulus::ALL.into_iter().zip(moduli) {
             if !(value > 0.0 && value.is_finite()) {
@@ -91,7 +95,8 @@ impl Model for Relaxed {
 
     fn solve(&self, observation: &Observation, calibration: &Calibration) -> Result<PointEstimate, EmtError> {
         let network = network(calibration)?;
-        let state = State::of(&observation.conditions, observation.grains, network, calibration);
+        let state =
+            State::of(&observation.conditions, (observation.grains, observation.probe), network, calibration);
         state.within_reach(calibration.name())?;
         let data = Data::of(observation, &state);
         if data.used == 0 {
@@ -168,8 +173,11 @@ fn point_estimate(
         let of_all = normal::score(chi_square / degrees_of_freedom as f64, degrees_of_freedom, Some(below));
         // The largest of several differences.
         let of_worst = 2.0 * normal::below(-worst.1) * data.used as f64;
-        if normal::below(-of_all).min(of_worst) < FALSE_ALARM {
+        let probability = normal::below(-of_all).min(of_worst);
+        if probability < FALSE_ALARM {
             warnings.push(Warning::Conflict { chi_square, degrees_of_freedom, worst });
+        } else if probability < UNLIKE {
+            warnings.push(Warning::Unlike { probability });
         }
     }
     PointEstimate { misfit, warnings, ..point }

@@ -4,7 +4,7 @@ use super::corrections::ContactCorrections;
 use super::gain::ContactKind;
 use super::prior::{PreparationPrior, SeriesPrior};
 use super::sample::{SeriesRow, SpeedMode, SpeedSeries};
-use crate::calibration::{NetworkState, RESPONSE_STDDEV, RelaxationCalibration};
+use crate::calibration::{NetworkState, RESPONSE_STDDEV, RelaxationCalibration, Scatter};
 use crate::invariants::{INVARIANTS, Invariants};
 use nalgebra::{DMatrix, DVector, RowSVector, SMatrix, SVector};
 use std::f64::consts::LN_10;
@@ -18,10 +18,6 @@ const INSIDE: [f64; 2] = [0.04, 0.92];
 /// Share of the scatter of packings that is a trend per decade of pressure; the rest is the same at every pressure. In 121
 /// packings the error of the laws is a trend: scatter of its own at each pressure would measure z falsely.
 const TREND: f64 = 0.4;
-
-/// Variance of the bulk and the shear modulus between recipes, over the scatter of the packings of the calibration: of recipes that
-/// taught nothing (`judged.csv`, `series.csv`).
-const BETWEEN_RECIPES: f64 = 3.0;
 
 /// Exponent of the pressure in the rise of z.
 const RISE: f64 = 0.3;
@@ -69,7 +65,8 @@ pub(super) struct Forward<'a> {
     errors: [DMatrix<f64>; 2],
     /// Covariance by the stated common errors.
     common: DMatrix<f64>,
-    variance_factors: [f64; crate::calibration::SCATTERED],
+    /// Levels of the scatter of samples of this size in the middle state, before their dependence on z.
+    packings: [Scatter; 2],
 }
 
 /// The model about one θ.
@@ -105,7 +102,6 @@ impl<'a> Forward<'a> {
             stress_ratio: series.stress_ratio[0],
         };
         let by_state = RelaxationCalibration::growth(&network.scatter_by_state, &state);
-        let of_size = network.variance_factors(Some(series.grains.unwrap_or(u32::MAX)));
         // An error of the density or of all pressures changes both moduli alike.
         let scale = [
             prior.level,
@@ -134,7 +130,7 @@ impl<'a> Forward<'a> {
             stress_ratio: series.stress_ratio,
             errors: [errors, shared],
             common,
-            variance_factors: std::array::from_fn(|k| by_state[k] * of_size[k]),
+            packings: network.scatter_of(Some(series.grains.unwrap_or(u32::MAX)), &by_state),
             pressures,
             rows,
             given,
@@ -337,7 +333,7 @@ impl<'a> Forward<'a> {
     /// Covariance of what the laws leave of the invariants and of ε weighted by stiffness: what is alike at all pressures, and
     /// what is a trend per decade.
     pub(super) fn scatter(&self, at: &Linearised) -> [Scatter6; 2] {
-        let all = self.network.scatter_at(at.mean_z, &self.variance_factors);
+        let all = RelaxationCalibration::at_z(at.mean_z, &self.packings);
         let packings: Scatter6 = all.fixed_view::<SCATTERED, SCATTERED>(0, 0).into_owned();
         let mut parts = [packings * (1.0 - TREND), packings * TREND];
         let alike = [self.level, self.prior.trend * self.prior.trend];
@@ -345,9 +341,6 @@ impl<'a> Forward<'a> {
             part.fixed_view_mut::<2, 2>(0, 0).add_scalar_mut(variance);
         }
         let network = self.network;
-        let recipes = network.scatter_at(at.mean_z, &[BETWEEN_RECIPES; crate::calibration::SCATTERED]);
-        let mut block = parts[0].fixed_view_mut::<2, 2>(0, 0);
-        block += recipes.fixed_view::<2, 2>(0, 0);
         let (state, _) = self.state(self.count() / 2, self.mindlin);
         let mut by_sizes = SVector::<f64, SCATTERED>::zeros();
         (by_sizes[0], by_sizes[1]) = (network.theta.by_size_variance(), network.shear.by_size_variance());

@@ -318,9 +318,10 @@ fn a_calibration_that_could_not_be_inverted_is_refused_by_field() {
 #[test]
 fn a_calibration_file_with_an_impossible_number_or_of_an_earlier_version_is_refused() {
     let text = ours().to_toml().unwrap();
+    let grains = format!("grains = {}", ours().network().unwrap().grains);
     for (sound, damaged, at_fault) in [
         ("density = 2500.0", "density = 0.0", "material.density"),
-        ("grains = 2000", "grains = 0", "network.grains"),
+        (&*grains, "grains = 0", "network.grains"),
         ("[network]\n", "[network]\nabscissa = \"k\"\n", "must be learned anew"),
     ] {
         assert!(text.contains(sound), "{sound}");

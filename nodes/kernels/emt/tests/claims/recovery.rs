@@ -37,12 +37,19 @@ fn calibrated() -> Vec<(&'static dyn Model, Calibration, Domain)> {
 fn every_model_inverts_its_own_prediction_over_its_whole_domain_ends_included() {
     for (seed, (model, calibration, domain)) in calibrated().into_iter().enumerate() {
         let mut random = Random::new(seed as u64);
+        let mut unstable = 0;
         for _ in 0..cases() {
             let (truth, conditions) = case(&mut random, &domain);
             let here = || format!("{} ({}): {truth:?} {conditions:?}", model.name(), calibration.name());
-            let moduli = model
-                .predict(&truth, &conditions, &calibration)
-                .unwrap_or_else(|e| panic!("{}: {e}", here()));
+            let moduli = match model.predict(&truth, &conditions, &calibration) {
+                Ok(moduli) => moduli,
+                // A corner of the domain: so few contacts with so large an anisotropy carry no shear.
+                Err(EmtError::Unstable { .. }) => {
+                    unstable += 1;
+                    continue;
+                }
+                Err(e) => panic!("{}: {e}", here()),
+            };
             let observed = Observation::new(moduli, conditions).checked().unwrap();
             let solution = model.solve(&observed, &calibration).unwrap_or_else(|e| panic!("{}: {e}", here()));
             for quantity in InferredQuantity::ALL {
@@ -51,6 +58,7 @@ fn every_model_inverts_its_own_prediction_over_its_whole_domain_ends_included() 
                 assert!((found - expected).abs() < 1e-9, "{}: {quantity} {found}", here());
             }
         }
+        assert!(unstable * 100 <= cases(), "{}: {unstable}", model.name());
     }
 }
 

@@ -5,8 +5,9 @@ use grainlab_core::Material;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 use grainlab_emt::Relaxed;
 use grainlab_emt::{
-    Calibration, Conditions, EmtError, Estimate, Measured, Model, Moduli, Modulus, Observation,
-    UNKNOWN_SIZE_SPREAD, UNKNOWN_STRESS_RATIO, Warning,
+    Calibration, Conditions, EmtError, Estimate, Measured, Model, Moduli, Modulus, NetworkState, Observation,
+    Posterior, PosteriorSettings, Prior, Probe, RelaxationCalibration, ScatterLevels, UNKNOWN_SIZE_SPREAD,
+    UNKNOWN_STRESS_RATIO, Warning,
 };
 use grainlab_testkit::Random;
 
@@ -118,18 +119,22 @@ fn intervals_contain_the_truth_as_often_as_stated_at_any_noise() {
 /// The five independent moduli of a sample with this mean, in the order of [`Modulus::ALL`] and without Θ.
 fn scattered(
     mean: &Moduli,
-    network: &grainlab_emt::RelaxationCalibration,
+    network: &RelaxationCalibration,
     z: f64,
     random: &mut Random,
 ) -> [Option<f64>; 6] {
-    let covariance = nalgebra::Matrix5::from_fn(|i, j| network.scatter[i][j]);
-    let excess = (z - 4.0) / z;
-    // Glass at 100 kPa, of equal grains: what the scatter grows by is that of its pressure.
-    let ln_pressure = (100e3 / Material::GLASS.effective_young() / 1e-6).ln();
-    let [scalars, deviators, _] = network.scatter_by_state.map(|[_, by_p]| (by_p * ln_pressure / 2.0).exp());
-    let growth = nalgebra::Vector5::new(scalars, scalars, deviators, deviators, deviators);
-    let root = covariance.cholesky().unwrap().l() / excess;
-    let off = (root * nalgebra::Vector5::from_fn(|_, _| random.normal())).component_mul(&growth);
+    // Glass at 100 kPa, of equal grains; the number of grains is unknown.
+    let state = NetworkState::of(100e3, &Material::GLASS, 0.0, 0.0);
+    let growth = RelaxationCalibration::growth(&network.scatter_by_state, &state);
+    let of_size = RelaxationCalibration::sample_variances(network.grains, None);
+    let [of_recipe, of_sample] = ScatterLevels::weights(z);
+    let [recipe, sample] = network.scatter.matrices();
+    let covariance = nalgebra::Matrix5::from_fn(|i, j| {
+        let recipe = recipe[(i, j)] / (of_recipe[i] * of_recipe[j]);
+        let sample = sample[(i, j)] * (of_size[i] * of_size[j]).sqrt() / (of_sample[i] * of_sample[j]);
+        (recipe + sample) * (growth[i] * growth[j]).sqrt()
+    });
+    let off = covariance.cholesky().unwrap().l() * nalgebra::Vector5::from_fn(|_, _| random.normal());
     let at = grainlab_emt::Invariants::of(mean).unwrap();
     let [ln_theta, ln_shear, dilatation, voigt, harmonic]: [f64; 5] =
         std::array::from_fn(|i| at.values()[i] + off[i]);
@@ -358,12 +363,51 @@ fn fewer_grains_scatter_more_and_more_grains_less() {
         let exact = Observation::new(moduli(5.3, 0.05), conditions()).with_relative_error(0.0);
         Relaxed.infer(&Observation { grains, ..exact }, ours()).unwrap().stddev(quantity).unwrap()
     };
-    let eps = |grains| sigma(InferredQuantity::Eps, Some(grains));
-    // Only the part that is due to the sample changes: .6 of the variance in smaller ones, .45 in larger ones.
-    assert!((eps(500) / eps(2000) - 2.8f64.sqrt()).abs() < 1e-9);
-    assert!((eps(8000) / eps(2000) - 0.6625f64.sqrt()).abs() < 1e-9);
-    assert!((eps(u32::MAX) / eps(2000) - 0.55f64.sqrt()).abs() < 1e-6);
-    assert_eq!(sigma(InferredQuantity::Eps, None), eps(2000));
+    for quantity in [InferredQuantity::Z, InferredQuantity::K, InferredQuantity::Eps] {
+        let of = |grains| sigma(quantity, Some(grains));
+        let sizes = [100, 500, 2000, 8000, u32::MAX].map(of);
+        assert!(sizes.is_sorted_by(|few, many| few > many) && sizes[4] > 0.0, "{quantity}: {sizes:?}");
+        // Over 100 to 20,000 grains, the mean of 1/N is 1/532 if ln N is uniform.
+        let unknown = sigma(quantity, None);
+        assert!((of(533)..of(531)).contains(&unknown), "{quantity}: {unknown}");
+    }
+}
+
+#[test]
+fn an_unknown_probe_widens_and_moves_nothing() {
+    use InferredQuantity::{Eps, EpsStiffness, K, Z};
+    let sticking = Observation::new(moduli(5.3, 0.05), conditions()).with_relative_error(0.01);
+    let unknown = Observation { probe: Probe::Unknown, ..sticking.clone() };
+    let [sticking, unknown] = [sticking, unknown].map(|o| Relaxed.infer(&o, ours()).unwrap());
+    assert_eq!((unknown.structure, unknown.status), (sticking.structure, sticking.status));
+    for (quantity, added) in [(Z, 0.19), (K, 0.43), (Eps, 0.040)] {
+        let [stddev, wider] = [&sticking, &unknown].map(|e| e.stddev(quantity).unwrap());
+        assert!((wider - stddev.hypot(added)).abs() < 1e-9, "{quantity}: {stddev} {wider}");
+    }
+    assert!(unknown.stddev(EpsStiffness) > sticking.stddev(EpsStiffness));
+    let said = |e: &Estimate| e.warnings.contains(&Warning::ProbeUnknown);
+    assert!(said(&unknown) && !said(&sticking));
+}
+
+#[test]
+fn draws_of_an_unknown_probe_are_as_wide_as_its_estimate() {
+    let observation = Observation {
+        probe: Probe::Unknown,
+        grains: Some(2000),
+        ..Observation::new(moduli(5.3, 0.03), conditions()).with_relative_error(0.01)
+    };
+    let estimate = Relaxed.infer(&observation, ours()).unwrap();
+    let settings = PosteriorSettings::default();
+    let posterior = Posterior::new(&Relaxed, &observation, ours(), &Prior::default(), settings).unwrap();
+    let draws = posterior.draws(4000).unwrap().draws;
+    for quantity in [InferredQuantity::Z, InferredQuantity::K, InferredQuantity::Eps] {
+        let values: Vec<f64> = draws.iter().map(|draw| draw.structure.get(quantity).unwrap()).collect();
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let stddev = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt();
+        let ratio = stddev / estimate.stddev(quantity).unwrap();
+        // The laws are not linear over three of these standard deviations.
+        assert!((0.85..1.15).contains(&ratio), "{quantity}: {ratio}");
+    }
 }
 
 /// Hertz contacts have no length scale, and no pressure scale but E*.

@@ -6,6 +6,7 @@ use crate::invariants::{INVARIANTS, Invariants};
 use crate::moduli::{MODULI, Modulus};
 use crate::observation::Observation;
 use crate::point_estimate::{Jacobian, PointEstimate};
+use crate::probe::ProbeErrors;
 use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
 use nalgebra::{Cholesky, SMatrix, SVector};
 
@@ -119,7 +120,7 @@ impl Fit {
         let at_zero = data.masked(isotropic.slopes());
         let covariance = |slopes: &ByInvariants, by_eps: &Moduli, of_inputs: &Square| {
             let scatter = network
-                .scatter_in(z, &state.variance_factors, laws)
+                .scatter_in(z, &state.scatter, laws)
                 .fixed_view::<INVARIANTS, INVARIANTS>(0, 0)
                 .into_owned();
             let of_packings = slopes * scatter * slopes.transpose();
@@ -153,9 +154,7 @@ impl Fit {
         let (of_inputs, with_following) = of_inputs(eps);
         let (c, of_packings) = covariance(&by_invariants, &direction, &of_inputs);
         let cholesky = Cholesky::new(c)?;
-        let by_z = by_invariants.column(0) * network.theta.slope(z, laws)
-            + by_invariants.column(1) * network.shear.slope(z, laws)
-            + (0..3).map(|i| by_invariants.column(2 + i) * deviators[i].slope(z, eps, laws)).sum::<Moduli>();
+        let by_z = by_z(&by_invariants, network, [z, eps], laws);
         let mut by_unknowns = SMatrix::<f64, MODULI, 2>::from_columns(&[by_z, direction]);
         let weight = cholesky.inverse();
         if !fits_eps {
@@ -238,7 +237,7 @@ impl Fit {
     ) -> PointEstimate {
         let (z, eps) = (self.z, self.eps);
         let gain = self.gain();
-        let scatter = network.scatter_in(z, &state.variance_factors, &state.laws);
+        let scatter = network.scatter_in(z, &state.scatter, &state.laws);
         let (laws, of_k, of_eps) = (&state.laws, network.rattlers, network.eps_stiffness);
         // Rows: ε weighted by stiffness, k. Columns: z, ε.
         let follows = SMatrix::<f64, 2, 2>::new(
@@ -303,7 +302,13 @@ impl Fit {
             let row = by_moduli * by_eps(&self.by_invariants, network, z, laws);
             errors += row * row.transpose() * (mean * mean + spread * spread);
         }
-        errors *= self.growth(data, network);
+        errors *= self.outside(network).iter().map(Outside::growth).product::<f64>();
+        if let Some(ProbeErrors { z, eps, k }) = state.probe.errors() {
+            // Sliding lowers z and k together.
+            let lowered = SVector::<f64, 4>::new(*z, 0.0, 0.0, *k);
+            let turned = SVector::<f64, 4>::new(0.0, *eps, of_eps.by_eps(self.z, laws) * eps, 0.0);
+            errors += lowered * lowered.transpose() + turned * turned.transpose();
+        }
         let mut discrepancy = MicrostructureCovariance::zeros();
         for (a, qa) in rows.into_iter().enumerate() {
             for (b, qb) in rows.into_iter().enumerate() {
@@ -318,13 +323,6 @@ impl Fit {
     pub(super) fn outside(&self, network: &RelaxationCalibration) -> Vec<Outside> {
         network.reach.outside_structure(self.z, self.fits_eps.then_some(self.eps))
     }
-
-    /// Factor of the variance of the model's error, 1 or more: it grows with the distance of the structure from the
-    /// packings of the calibration, and where the moduli fit the laws less well than those of the packings.
-    fn growth(&self, data: &Data, network: &RelaxationCalibration) -> f64 {
-        let misfit = self.degrees_of_freedom(data).map_or(1.0, |n| (self.chi_square / n as f64).max(1.0));
-        self.outside(network).iter().map(Outside::growth).product::<f64>() * misfit
-    }
 }
 
 /// Laws of the two deviators and of the harmonic part.
@@ -332,7 +330,26 @@ fn deviators(network: &RelaxationCalibration) -> [DeviatorLaw; 3] {
     [network.dilatation, network.voigt, network.harmonic]
 }
 
-/// Derivative of the moduli with respect to ε.
-fn by_eps(slopes: &ByInvariants, network: &RelaxationCalibration, z: f64, laws: &NetworkState) -> Moduli {
+/// Returns the derivative of the moduli with respect to z.
+pub(super) fn by_z(
+    slopes: &ByInvariants,
+    network: &RelaxationCalibration,
+    [z, eps]: [f64; 2],
+    laws: &NetworkState,
+) -> Moduli {
+    let of_deviators =
+        (2..).zip(deviators(network)).map(|(i, law)| slopes.column(i) * law.slope(z, eps, laws));
+    slopes.column(0) * network.theta.slope(z, laws)
+        + slopes.column(1) * network.shear.slope(z, laws)
+        + of_deviators.sum::<Moduli>()
+}
+
+/// Returns the derivative of the moduli with respect to ε.
+pub(super) fn by_eps(
+    slopes: &ByInvariants,
+    network: &RelaxationCalibration,
+    z: f64,
+    laws: &NetworkState,
+) -> Moduli {
     (2..).zip(deviators(network)).map(|(i, law)| slopes.column(i) * law.by_eps(z, laws)).sum()
 }

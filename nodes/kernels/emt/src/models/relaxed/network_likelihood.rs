@@ -1,7 +1,7 @@
 //! The probability of moduli for a network of given z and ε: the laws, with the scatter of packings and the errors of the data.
 //! k and the ε weighted by stiffness follow, with the scatter that is left when the moduli are known.
 
-use super::fit::Data;
+use super::fit::{Data, by_eps, by_z};
 use super::state::State;
 use crate::calibration::{Calibration, Outside, RelaxationCalibration};
 use crate::error::EmtError;
@@ -29,7 +29,8 @@ impl<'a> NetworkLikelihood<'a> {
         network: &'a RelaxationCalibration,
         calibration: &Calibration,
     ) -> Result<Self, EmtError> {
-        let state = State::of(&observation.conditions, observation.grains, network, calibration);
+        let state =
+            State::of(&observation.conditions, (observation.grains, observation.probe), network, calibration);
         state.within_reach(calibration.name())?;
         let data = Data::of(observation, &state);
         if data.used == 0 {
@@ -72,7 +73,7 @@ impl Likelihood for NetworkLikelihood<'_> {
             return None;
         }
         let growth: f64 = network.reach.outside_structure(z, Some(eps)).iter().map(Outside::growth).product();
-        let scatter = network.scatter_in(z, &state.variance_factors, &state.laws) * growth;
+        let scatter = network.scatter_in(z, &state.scatter, &state.laws) * growth;
         let slopes = data.masked(invariants.slopes());
         let mut covariance = slopes * scatter.fixed_view::<INVARIANTS, INVARIANTS>(0, 0) * slopes.transpose()
             + data.covariance;
@@ -84,6 +85,15 @@ impl Likelihood for NetworkLikelihood<'_> {
             covariance += moduli * moduli.transpose() * input.variance;
             with_moduli += by.following * moduli.transpose() * input.variance;
             following += by.following * by.following.transpose() * input.variance;
+        }
+        if let Some(errors) = state.probe.errors() {
+            let laws = &state.laws;
+            // The moduli are those of another z and another ε.
+            let by_eps = by_eps(&slopes, network, z, laws) * errors.eps;
+            let by_z = by_z(&slopes, network, [z, eps], laws) * errors.z;
+            covariance += by_z * by_z.transpose() + by_eps * by_eps.transpose();
+            let of_z = network.rattlers.slope(z, laws) * errors.z;
+            following[(1, 1)] += (errors.k * errors.k - of_z * of_z).max(0.0);
         }
         let residual = data.masked(data.value - SVector::from(invariants.moduli()));
         let scale = state.unit / UNIT;

@@ -1,12 +1,13 @@
 //! The state of the sample, as the scaling laws take it.
 
-use crate::calibration::{Calibration, NetworkState, Outside, RelaxationCalibration, SCATTERED};
+use crate::calibration::{Calibration, NetworkState, Outside, RelaxationCalibration, SCATTERED, Scatter};
 use crate::conditions::{
     Conditions, LARGEST_SPREAD, STATE_INPUTS, UNKNOWN_SIZE_SPREAD, UNKNOWN_STRESS_RATIO,
 };
 use crate::error::EmtError;
 use crate::invariants::Invariants;
 use crate::moduli::MODULI;
+use crate::probe::Probe;
 use grainlab_core::Material;
 use nalgebra::{SVector, Vector2};
 
@@ -29,8 +30,10 @@ pub(super) struct State {
     pub(super) stress_known: bool,
     /// True if the sizes were given.
     pub(super) sizes_known: bool,
-    /// Variances of the scatter in this state and of samples of this size over those of the calibration.
-    pub(super) variance_factors: [f64; SCATTERED],
+    /// Levels of the scatter of samples of this size in this state, before their dependence on z.
+    pub(super) scatter: [Scatter; 2],
+    /// Whether contacts slid while the moduli were measured.
+    pub(super) probe: Probe,
     /// Quantities outside the packings of the calibration.
     pub(super) outside: Vec<Outside>,
 }
@@ -98,7 +101,7 @@ fn invariants(network: &RelaxationCalibration, laws: &NetworkState, z: f64, eps:
 impl State {
     pub(super) fn of(
         conditions: &Conditions,
-        grains: Option<u32>,
+        (grains, probe): (Option<u32>, Probe),
         network: &RelaxationCalibration,
         calibration: &Calibration,
     ) -> Self {
@@ -117,7 +120,6 @@ impl State {
         };
         let inputs = (0..STATE_INPUTS).filter_map(input).collect();
         let growth: f64 = outside.iter().map(Outside::growth).product();
-        let of_sample = network.variance_factors(grains);
         let grown = |laws: &NetworkState| RelaxationCalibration::growth(&network.scatter_by_state, laws);
         let of_state = match conditions.size_spread {
             Some(_) => grown(&laws),
@@ -136,7 +138,8 @@ impl State {
             inputs,
             stress_known: conditions.stress_ratio.is_some(),
             sizes_known: conditions.size_spread.is_some(),
-            variance_factors: std::array::from_fn(|i| of_sample[i] * of_state[i] * growth),
+            probe,
+            scatter: network.scatter_of(grains, &of_state).map(|level| level * growth),
             outside,
         }
     }
