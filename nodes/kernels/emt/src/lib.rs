@@ -74,7 +74,8 @@ mod wave_moduli;
 
 pub use calibration::{
     Calibration, CalibrationError, DeviatorLaw, GROUPS, ISOSTATIC, IsotropicCalibration, ModelDiscrepancy,
-    NetworkState, RattlerLaw, Reach, RelaxationCalibration, SCATTERED, ScalingLaw, Scatter, ScatterLevels,
+    NetworkState, RESPONSE_STDDEV, RattlerLaw, Reach, RelaxationCalibration, SCATTERED, ScalingLaw, Scatter,
+    ScatterLevels,
 };
 pub use checks::{ROUNDING, check_structure};
 pub use conditions::{
@@ -88,6 +89,7 @@ pub use invariants::Invariants;
 pub use likelihood::{Likelihood, Predicted};
 pub use medium::{Medium, MediumModuli};
 pub use model::Model;
+pub use models::free_contact::ROUGH_CONTACTS;
 pub use models::relaxed::Relaxed;
 pub use moduli::{MODULI, Moduli, ModuliCovariance, Modulus};
 pub use moments::Moments;
@@ -100,8 +102,8 @@ pub use probe::{NoProbe, Probe, ProbeErrors};
 pub use registry::{free_contact, model, models, recommended};
 pub use series::{
     ContactCorrections, ContactKind, ContactPrior, Doubted, Interval, LawEstimate, LeftOut, PreparationPrior,
-    PressureEstimate, RowEstimate, SampleQuantity, Sensitivity, SeriesEstimate, SeriesPrior, SeriesRow,
-    SpeedMode, SpeedSeries, infer_series, series_stddev, simulate_series,
+    PressureEstimate, RowEstimate, SCATTER_TREND, SampleQuantity, Sensitivity, SeriesEstimate, SeriesPrior,
+    SeriesRow, SpeedMode, SpeedSeries, infer_series, series_stddev, simulate_series,
 };
 pub use warning::Warning;
 pub use wave_moduli::WaveModuli;

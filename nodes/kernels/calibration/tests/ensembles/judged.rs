@@ -60,7 +60,7 @@ fn is_answer(e: &Estimate) -> bool {
 }
 
 #[test]
-fn at_most_one_in_a_hundred_answers_of_any_model_is_more_than_three_stated_sigmas_off() {
+fn at_most_one_in_fifty_answers_of_any_model_is_more_than_three_stated_sigmas_off_in_a_quantity() {
     const SOURCES: [StrainRatioSource; 4] = [
         StrainRatioSource::Zero,
         StrainRatioSource::Total,
@@ -73,7 +73,7 @@ fn at_most_one_in_a_hundred_answers_of_any_model_is_more_than_three_stated_sigma
         let calibration = Calibration::builtin(name).unwrap();
         for model in models() {
             for source in if model.uses_gamma() { &SOURCES[..] } else { &SOURCES[..1] } {
-                let (mut ok, mut off, mut worst, mut without) = (0, 0, 0.0f64, 0);
+                let (mut ok, mut off, mut worst, mut without) = (0, [0; 4], 0.0f64, 0);
                 for s in &packings {
                     let Ok(e) = model.infer(&s.observation(*source), calibration) else { continue };
                     if !is_answer(&e) {
@@ -83,14 +83,18 @@ fn at_most_one_in_a_hundred_answers_of_any_model_is_more_than_three_stated_sigma
                     let determined = QUANTITIES.iter().filter(|q| e.structure.get(**q).is_some()).count();
                     without += usize::from(pulls.len() < determined);
                     let furthest = pulls.iter().map(|(_, p)| p.abs()).fold(0.0, f64::max);
-                    (ok, off, worst) = (ok + 1, off + usize::from(furthest > 3.0), worst.max(furthest));
+                    (ok, worst) = (ok + 1, worst.max(furthest));
+                    for (q, pull) in pulls {
+                        let at = QUANTITIES.iter().position(|known| *known == q).unwrap();
+                        off[at] += usize::from(pull.abs() > 3.0);
+                    }
                 }
                 eprintln!(
-                    "{name} {} {}: {off} of {ok} beyond 3 sigma, furthest {worst:.1}",
+                    "{name} {} {}: k, z, eps, eps_stiffness of {off:?} of {ok} beyond 3 sigma, furthest {worst:.1}",
                     model.name(),
                     source.name()
                 );
-                if off * 100 > ok || without > 0 {
+                if off.iter().any(|off| off * 50 > ok) || without > 0 {
                     faults.push((name, model.name(), source.name(), off, ok, without));
                 }
             }
@@ -170,9 +174,9 @@ fn intervals_hold_the_truth_where_the_state_is_uncertain() {
     }
     let share: [f64; 4] = std::array::from_fn(|i| inside_95[i] as f64 / count[i] as f64);
     eprintln!("inside 95 % of k, z, eps, eps_stiffness: {share:?} of {count:?}");
-    // The distribution of q/p, from which most of the error of ε is, has no tails.
-    let most = [0.98, 0.98, 0.99, 0.98];
-    assert!(share.iter().zip(most).all(|(share, most)| (0.93..=most).contains(share)), "{share:?}");
+    // The recipes that taught differ more in k than these. Most of the error of ε is due to q/p, whose distribution has no tails.
+    let most = [1.0, 0.98, 0.99, 0.98];
+    assert!(share.iter().zip(most).all(|(share, most)| (0.92..=most).contains(share)), "{share:?}");
 }
 
 /// The moduli with independent errors of this relative size, stated; one of them off by so many of its errors.

@@ -10,6 +10,7 @@ mod locked;
 mod predictive;
 mod ranks;
 mod rock_physics;
+mod scatter;
 mod series;
 mod stress_and_fabric;
 mod table;
@@ -150,7 +151,7 @@ fn intervals_of_larger_samples_are_narrower_and_hold_the_truth() {
     assert!(large.len() == 90 && large.iter().all(|s| s.grains == 8000));
     for quantity in [InferredQuantity::Z, InferredQuantity::Eps, InferredQuantity::EpsStiffness] {
         let covered = errors_over(&large, "relaxed", StrainRatioSource::Zero, quantity, |m| m).covered;
-        assert!((0.93..=0.99).contains(&covered), "{quantity}: {covered}");
+        assert!(covered >= 0.93, "{quantity}: {covered}");
     }
 }
 

@@ -18,5 +18,5 @@ pub(crate) use laws::REFERENCE_STIFFNESS_RATIO;
 pub use laws::{DeviatorLaw, ISOSTATIC, NetworkState, RattlerLaw, ScalingLaw};
 pub(crate) use reach::Outside;
 pub use reach::Reach;
-pub(crate) use relaxation::RESPONSE_STDDEV;
+pub use relaxation::RESPONSE_STDDEV;
 pub use relaxation::{GROUPS, RelaxationCalibration, SCATTERED, Scatter, ScatterLevels};

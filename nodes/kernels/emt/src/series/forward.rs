@@ -15,9 +15,9 @@ const Z: [f64; 2] = [4.05, 7.0];
 /// Ends of the mean of the prior of u, as shares of the range of z.
 const INSIDE: [f64; 2] = [0.04, 0.92];
 
-/// Share of the scatter of packings that is a trend per decade of pressure; the rest is the same at every pressure. In 121
-/// packings the error of the laws is a trend: scatter of its own at each pressure would measure z falsely.
-const TREND: f64 = 0.4;
+/// Share of the scatter of packings that is a trend per decade of pressure; the rest is the same at every pressure. Scatter of its own at
+/// each pressure would measure z falsely. The tests of `grainlab_calibration` fit it.
+pub const SCATTER_TREND: f64 = 0.4;
 
 /// Exponent of the pressure in the rise of z.
 const RISE: f64 = 0.3;
@@ -335,7 +335,7 @@ impl<'a> Forward<'a> {
     pub(super) fn scatter(&self, at: &Linearised) -> [Scatter6; 2] {
         let all = RelaxationCalibration::at_z(at.mean_z, &self.packings);
         let packings: Scatter6 = all.fixed_view::<SCATTERED, SCATTERED>(0, 0).into_owned();
-        let mut parts = [packings * (1.0 - TREND), packings * TREND];
+        let mut parts = [packings * (1.0 - SCATTER_TREND), packings * SCATTER_TREND];
         let alike = [self.level, self.prior.trend * self.prior.trend];
         for (part, variance) in parts.iter_mut().zip(alike) {
             part.fixed_view_mut::<2, 2>(0, 0).add_scalar_mut(variance);
