@@ -41,6 +41,10 @@ const BY_EYE: f64 = 0.15;
 /// `short_paths_teach_the_error_of_s_after_p` fits it.
 const EARLIER: f64 = 3.8;
 
+/// Error of the time of a feature between samples, periods times the square of the samples in a period. Interpolation is of second order
+/// in the interval; at 4 samples in a period a feature is anywhere between two samples of the source, and of the receiver (√(2/12)).
+const SAMPLED: f64 = 1.6;
+
 /// Errors that records of known speed taught, in the order of [`Pick::causes`].
 pub(super) const TAUGHT: [f64; 3] = [UNLIKE, BY_EYE, EARLIER];
 
@@ -207,7 +211,8 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
         p.causes = [features * unlike, (1.0 - features) * period, may_be_s * early.max(0.0) * period];
         let taught = std::array::from_fn::<f64, 3, _>(|k| TAUGHT[k] * p.causes[k]);
         let after = first.map_or(0.0, |first: f64| (p.time - first).max(0.0));
-        let others = [p.time_stddev, HALF_PERIOD * features * sign_doubt * period, after];
+        let sampled = SAMPLED * band.frequency.powi(2) * period;
+        let others = [p.time_stddev, HALF_PERIOD * features * sign_doubt * period, after, sampled];
         p.time_stddev = taught.iter().chain(&others).map(|e| e * e).sum::<f64>().sqrt();
         *p = p.with_speed(passage);
     }
