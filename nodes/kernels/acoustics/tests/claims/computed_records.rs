@@ -61,6 +61,8 @@ pub(crate) struct Conditions {
     pub(crate) resonance: Option<[f64; 2]>,
     /// Durations of the source between the arrival and the end of the record; `None`: the record has the whole arrival.
     pub(crate) after: Option<f64>,
+    /// Number of the noise: records that differ in nothing else are repetitions.
+    pub(crate) repetition: u64,
 }
 
 /// A source and its spectrum.
@@ -133,7 +135,8 @@ pub(crate) fn computed(seed: u64) -> Computed {
 
 /// The record of number `seed` with this ratio of S to P, and this noise over the peak of the wave of the mode.
 pub(crate) fn computed_with(seed: u64, s_over_p: f64, noise: f64) -> Computed {
-    let conditions = Conditions { s_over_p, noise, periods: 5.0..9.0, resonance: None, after: None };
+    let conditions =
+        Conditions { s_over_p, noise, periods: 5.0..9.0, resonance: None, after: None, repetition: 0 };
     computed_under(seed, &conditions)
 }
 
@@ -164,6 +167,9 @@ pub(crate) fn computed_under(seed: u64, conditions: &Conditions) -> Computed {
     let end = conditions.after.map(|after| QUIET + (time + after * cycles * period) as usize);
     let samples = end.unwrap_or(SAMPLES).min(SAMPLES);
     let sent = source.samples[..samples].to_vec();
+    for _ in 0..conditions.repetition * SAMPLES as u64 {
+        let _: f64 = StandardNormal.sample(&mut random);
+    }
     let receiver = (0..samples)
         .map(|k| {
             let later = if has_later { heights[2] * sign(heights[1]) * waves[2][k] } else { 0.0 };

@@ -45,6 +45,9 @@ fn waves_of_8_times_the_noise_have_answers_whose_stated_errors_hold() {
         let Some(p) = found else { continue };
         assert!((p.speed - of.speed).abs() < 3.0 * p.speed_stddev, "{}: {p:?} of {}", of.seed, of.speed);
     }
+    let answers: Vec<_> = all.iter().filter_map(|(of, found)| found.map(|p| (of, p))).collect();
+    let inside = answers.iter().filter(|(of, p)| (p.speed - of.speed).abs() < 1.96 * p.speed_stddev).count();
+    assert!(inside as f64 >= 0.93 * answers.len() as f64, "{inside} of {}", answers.len());
     for (is_quiet, most) in [(true, 0.03), (false, 0.1)] {
         let of_noise = all.iter().filter(|(of, _)| (of.noise < 0.03) == is_quiet);
         let mut stated: Vec<f64> =
