@@ -17,7 +17,6 @@
 //! - `separated`: the arrival without crosstalk; `forward`: computed records; `travel_time`: picks with bias and error
 
 #[cfg(test)]
-#[allow(dead_code)]
 #[path = "../tests/claims/computed_records.rs"]
 mod computed_records;
 #[cfg(test)]

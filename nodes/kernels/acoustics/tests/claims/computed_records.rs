@@ -32,20 +32,12 @@ const DISTANCE: f64 = 0.15;
 /// A computed record, and what is true of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Computed {
-    /// Number of the record.
-    pub(crate) seed: u64,
     /// The record.
     pub(crate) record: Record,
     /// The path, with the mode of the wave.
     pub(crate) passage: Passage,
     /// Speed of the wave of the mode at the mean frequency of the source, m/s.
     pub(crate) speed: f64,
-    /// Peak of S over the peak of P.
-    pub(crate) s_over_p: f64,
-    /// Root mean square of the noise over the peak of the wave of the mode.
-    pub(crate) noise: f64,
-    /// True if a wave larger than S follows it.
-    pub(crate) has_later: bool,
 }
 
 /// Conditions of a computed record.
@@ -124,29 +116,26 @@ impl Source {
     }
 }
 
-/// The record of number `seed`: of P if it is even, else of S. S is 1 to 300 times P, the noise 1 to 20 % of the wave of the mode.
-pub(crate) fn computed(seed: u64) -> Computed {
+/// Returns the usual conditions of the record of number `seed`. S is 1 to 300 times P, the noise 1 to 20 % of the wave of the mode.
+pub(crate) fn usual(seed: u64) -> Conditions {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let mut between = |low: f64, high: f64| Uniform::new(low, high).unwrap().sample(&mut random);
     let s_over_p = between(0.0, 300f64.ln()).exp();
     let noise = between(0.01f64.ln(), 0.2f64.ln()).exp();
-    computed_with(seed, s_over_p, noise)
+    Conditions { s_over_p, noise, periods: 5.0..9.0, resonance: None, after: None, repetition: 0 }
 }
 
-/// The record of number `seed` with this ratio of S to P, and this noise over the peak of the wave of the mode.
-pub(crate) fn computed_with(seed: u64, s_over_p: f64, noise: f64) -> Computed {
-    let conditions =
-        Conditions { s_over_p, noise, periods: 5.0..9.0, resonance: None, after: None, repetition: 0 };
-    computed_under(seed, &conditions)
+/// Returns true if a wave that is larger than S follows S in the record of number `seed`.
+pub(crate) fn has_later(seed: u64) -> bool {
+    (seed / 2).is_multiple_of(2)
 }
 
-/// The record of number `seed` under these conditions.
-pub(crate) fn computed_under(seed: u64, conditions: &Conditions) -> Computed {
+/// Computes the record of number `seed` under these conditions. It is of P if the number is even, else of S.
+pub(crate) fn computed(seed: u64, conditions: &Conditions) -> Computed {
     let Conditions { s_over_p, noise, resonance, .. } = *conditions;
     let mut random = Pcg64Mcg::seed_from_u64(seed ^ PLACE);
     let mut between = |low: f64, high: f64| Uniform::new(low, high).unwrap().sample(&mut random);
     let longitudinal = seed.is_multiple_of(2);
-    let has_later = (seed / 2).is_multiple_of(2);
     let cycles = if between(0.0, 1.0) < 0.5 { 1.0 } else { 2.0 };
     let period = between(24.0, 50.0);
     let source = Source::new(1.0 / period, cycles);
@@ -172,7 +161,7 @@ pub(crate) fn computed_under(seed: u64, conditions: &Conditions) -> Computed {
     }
     let receiver = (0..samples)
         .map(|k| {
-            let later = if has_later { heights[2] * sign(heights[1]) * waves[2][k] } else { 0.0 };
+            let later = if has_later(seed) { heights[2] * sign(heights[1]) * waves[2][k] } else { 0.0 };
             let near = near_share * near[k] * if longitudinal { 1.0 } else { heights[1] };
             let gauss: f64 = StandardNormal.sample(&mut random);
             unit * (waves[0][k] + heights[1] * waves[1][k] + later + near)
@@ -194,12 +183,8 @@ pub(crate) fn computed_under(seed: u64, conditions: &Conditions) -> Computed {
         longitudinal: Some(longitudinal),
     };
     Computed {
-        seed,
         record: Record { sample_rate: RATE, quiet: 0..QUIET - 8, source: sent, receiver },
         passage,
         speed: DISTANCE / time * RATE,
-        s_over_p,
-        noise,
-        has_later,
     }
 }
