@@ -19,9 +19,9 @@ const COPIES: u64 = 64;
 /// waves in packings 0.03 % larger.
 const ROUNDS: usize = 2;
 
-/// Half a period: a feature that is further off belongs to another crest, and a wave of the wrong sign is off by this much.
+/// Half a period. A feature that is further off belongs to another crest, and a wave of the wrong sign is off by this much.
 ///
-/// It bounds the bias. A computed record whose pick is off by more widens the error instead.
+/// Half a period bounds the bias. A computed record whose pick is off by more widens the error instead.
 const HALF_PERIOD: f64 = 0.5;
 
 /// Difference of two picks, in standard deviations, above which they contradict each other. Normal errors differ by more in 0.3 %, and
@@ -50,8 +50,8 @@ pub(super) const TAUGHT: [f64; 4] = [UNLIKE, BY_EYE, EARLIER, UNSEEN];
 /// Standard deviations from the middle to an end of a 95 % interval.
 pub(super) const OF_INTERVAL: f64 = 1.96;
 
-/// Largest share of the variance of a time that records of one path and mode have in common: dispersion, near field and ringing are much
-/// the same in all of them, noise is not. `repeated_records_have_less_than_the_stated_share_of_the_variance_in_common` tests it.
+/// Share of the variance of a time that records of one path and mode have in common. It is 0.3 if transducers do not ring, and 1 if they
+/// ring. `records_of_one_path_have_less_in_common_than_is_stated_and_more_if_the_transducers_ring` tests that this share is between.
 pub(super) const ALIKE: f64 = 0.5;
 
 /// Least length of a path, wavelengths, and speeds of waves in packings of grains, m/s. Other results are refused, because they are

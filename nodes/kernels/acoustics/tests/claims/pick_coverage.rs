@@ -51,7 +51,8 @@ fn waves_of_8_times_the_noise_have_answers_whose_stated_errors_hold() {
         assert!((p.speed - speed).abs() < 3.0 * p.speed_stddev, "{seed}: {p:?} of {speed}");
     }
     let answers: Vec<_> = all.iter().filter_map(|(_, _, speed, found)| found.map(|p| (speed, p))).collect();
-    let inside = answers.iter().filter(|(speed, p)| (p.speed - **speed).abs() < 1.96 * p.speed_stddev).count();
+    let inside =
+        answers.iter().filter(|(speed, p)| (p.speed - **speed).abs() < 1.96 * p.speed_stddev).count();
     assert!(inside as f64 >= 0.93 * answers.len() as f64, "{inside} of {}", answers.len());
     for (is_quiet, most) in [(true, 0.03), (false, 0.1)] {
         let of_noise = all.iter().filter(|(_, noise, ..)| (*noise < 0.03) == is_quiet);
