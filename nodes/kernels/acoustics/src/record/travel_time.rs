@@ -203,7 +203,8 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
     // Over the mean, which noise makes smaller, so that noise does not make the difference smaller.
     let unlike = (1.0 - alike[0] / alike[1]).max(0.0) * period;
     let sign_doubt = ((found.opposite - opposite) / (1.0 - opposite).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-    let may_be_s = f64::from(passage.longitudinal != Some(true));
+    // Where there is another candidate, it is the earlier signal, and the error covers both.
+    let may_be_later = f64::from(passage.longitudinal != Some(true) && found.other.is_none());
     // Interpolation is of second order in the interval between samples. At the fewest samples in a period a feature is anywhere between
     // two samples of the source, and of the receiver.
     let sampled = (2.0 / 12f64).sqrt() * LEAST_PER_PERIOD * band.frequency.powi(2) * period;
@@ -213,7 +214,7 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
         p.causes = [
             features * unlike,
             (1.0 - features) * period,
-            may_be_s * early.max(0.0) * period,
+            may_be_later * early.max(0.0) * period,
             (p.time - whole).max(0.0),
         ];
         let taught = std::array::from_fn::<f64, 4, _>(|k| TAUGHT[k] * p.causes[k]);
