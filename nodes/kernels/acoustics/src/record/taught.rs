@@ -1,4 +1,4 @@
-//! What teaches the constants of `travel_time`: computed records of known speed, other than those of the tests of stated errors.
+//! Fits of the constants of `travel_time` by computed records of known speed. No test of stated errors has these records.
 
 use super::computed_records::{Computed, Conditions, computed, usual};
 use super::travel_time::{ALIKE, OF_INTERVAL, Pick, TAUGHT, picks};

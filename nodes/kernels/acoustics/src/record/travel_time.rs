@@ -15,8 +15,9 @@ use rayon::prelude::*;
 /// Number of computed records. Their scatter has an error of 9 % (1/√128).
 const COPIES: u64 = 64;
 
-/// Number of rounds in which the time at which the bias is found follows the time without it. One round less makes the median error of
-/// waves in packings 0.03 % larger.
+/// Number of rounds in which the time at which the bias is found follows the time without it.
+///
+/// One round less makes the median error of waves in packings 0.03 % larger.
 const ROUNDS: usize = 2;
 
 /// Half a period. A feature that is further off belongs to another crest, and a wave of the wrong sign is off by this much.
@@ -24,23 +25,28 @@ const ROUNDS: usize = 2;
 /// Half a period bounds the bias. A computed record whose pick is off by more widens the error instead.
 const HALF_PERIOD: f64 = 0.5;
 
-/// Difference of two picks, in standard deviations, above which they contradict each other. Normal errors differ by more in 0.3 %, and
-/// the test of stated errors in packings allows 1 % of its records.
+/// Difference of two picks, in standard deviations, above which they contradict each other.
+///
+/// Normal errors differ by more in 0.3 %. The test of stated errors in packings allows 1 % of its records.
 const APART: f64 = 3.0;
 
-/// Standard deviation of a peak or a correlation whose shape is not that of the computed ones, periods over the relative difference of
-/// the correlations. `records_that_end_inside_the_arrival_teach_the_error_of_an_unlike_shape` fits it.
+/// Standard deviation of a peak or a correlation of an unlike wave, periods over the relative difference of the correlations.
+///
+/// `records_that_end_inside_the_arrival_teach_the_error_of_an_unlike_shape` fits it.
 const UNLIKE: f64 = 1.1;
 
-/// Standard deviation of an onset beyond the scatter of computed records, periods. `transducers_that_ring_teach_the_error_of_an_onset`
-/// fits it.
+/// Standard deviation of an onset beyond the scatter of computed records, periods.
+///
+/// `transducers_that_ring_teach_the_error_of_an_onset` fits it.
 const BY_EYE: f64 = 0.11;
 
 /// Standard deviation of a shear wave with a signal just before it, periods over the ratio of both signals.
+///
 /// `short_paths_teach_the_error_of_s_after_p` fits it.
 const EARLIER: f64 = 2.5;
 
 /// Standard deviation of a wave whose end is not in the record, over the time that is missing.
+///
 /// `records_that_end_early_in_the_arrival_teach_the_error_of_what_is_missing` fits it.
 const UNSEEN: f64 = 0.37;
 
@@ -50,12 +56,15 @@ pub(super) const TAUGHT: [f64; 4] = [UNLIKE, BY_EYE, EARLIER, UNSEEN];
 /// Standard deviations from the middle to an end of a 95 % interval.
 pub(super) const OF_INTERVAL: f64 = 1.96;
 
-/// Share of the variance of a time that records of one path and mode have in common. It is 0.3 if transducers do not ring, and 1 if they
-/// ring. `records_of_one_path_have_less_in_common_than_is_stated_and_more_if_the_transducers_ring` tests that this share is between.
+/// Share of the variance of a time that records of one path and mode have in common.
+///
+/// The share is 0.3 if the transducers do not ring, and 1 if they ring.
+/// `records_of_one_path_have_less_in_common_than_is_stated_and_more_if_the_transducers_ring` tests that this constant is between.
 pub(super) const ALIKE: f64 = 0.5;
 
-/// Least length of a path, wavelengths, and speeds of waves in packings of grains, m/s. Other results are refused, because they are
-/// mistakes of a unit or no waves.
+/// Least length of a path, wavelengths, and speeds of waves in packings of grains, m/s.
+///
+/// Other results are refused, because they are no waves, or have a wrong unit.
 const SHORTEST: f64 = 0.5;
 const SPEEDS: std::ops::Range<f64> = 1.0..1e4;
 
