@@ -5,7 +5,7 @@
 #[path = "../tests/claims/computed_records.rs"]
 mod computed_records;
 
-use computed_records::computed;
+use computed_records::{computed, has_later, usual};
 use grainlab_acoustics::record::picks;
 use rayon::prelude::*;
 
@@ -13,16 +13,20 @@ fn main() {
     let count = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(200);
     println!("record,mode,s_over_p,noise,later,true_speed,speed,stddev,off,refused");
     let one = |seed: u64| {
-        let of = computed(seed);
-        (picks(&of.record, &of.passage, 1).map(|found| found.picks[found.recommended]), of)
+        let conditions = usual(seed);
+        let of = computed(seed, &conditions);
+        let found = picks(&of.record, &of.passage, 1).map(|found| found.picks[found.recommended]);
+        (seed, conditions, of, found)
     };
     let all: Vec<_> = (0..count).into_par_iter().map(one).collect();
     let mut answers = [(0, 0); 2];
     let mut off = Vec::new();
-    for (found, of) in &all {
+    for (seed, conditions, of, found) in &all {
+        let noise = conditions.noise;
         let mode = if of.passage.longitudinal == Some(true) { "p" } else { "s" };
-        print!("{},{mode},{:.1},{:.3},{},{:.1},", of.seed, of.s_over_p, of.noise, of.has_later, of.speed);
-        let class = usize::from(of.noise > 0.125);
+        let (s_over_p, later) = (conditions.s_over_p, has_later(*seed));
+        print!("{seed},{mode},{s_over_p:.1},{noise:.3},{later},{:.1},", of.speed);
+        let class = usize::from(noise > 0.125);
         answers[class].1 += 1;
         match found {
             Ok(p) => {
@@ -32,7 +36,7 @@ fn main() {
                 off.push((
                     sigmas.abs(),
                     p.speed_stddev / p.speed,
-                    of.noise < 0.03,
+                    noise < 0.03,
                     (p.speed / of.speed - 1.0).abs(),
                 ));
             }

@@ -12,6 +12,10 @@
 //!
 //! [`measure`](fn@measure) applies a method to a set of rays (`survey`), through an `instrument` with noise.
 
+// The computed records of the tests name this crate.
+#[cfg(test)]
+extern crate self as grainlab_acoustics;
+
 mod backbone;
 mod curve;
 pub mod dispersion;

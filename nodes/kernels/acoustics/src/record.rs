@@ -16,6 +16,12 @@
 //! - `distinct`: the waves in a receiver; `chosen`: the one of the mode
 //! - `separated`: the arrival without crosstalk; `forward`: computed records; `travel_time`: picks with bias and error
 
+#[cfg(test)]
+#[path = "../tests/claims/computed_records.rs"]
+mod computed_records;
+#[cfg(test)]
+mod taught;
+
 mod ambient;
 mod band;
 mod chosen;

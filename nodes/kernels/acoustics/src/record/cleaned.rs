@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// Least number of samples per period, of a record, and before the source starts.
-const LEAST_PER_PERIOD: f64 = 4.0;
+pub(super) const LEAST_PER_PERIOD: f64 = 4.0;
 const LEAST_SAMPLES: usize = 32;
 const LEAST_QUIET: usize = 8;
 

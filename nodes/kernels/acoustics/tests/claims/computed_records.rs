@@ -10,6 +10,7 @@ use rand_pcg::rand_core::SeedableRng;
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Number of samples of a record, and of its transforms.
@@ -31,20 +32,29 @@ const DISTANCE: f64 = 0.15;
 /// A computed record, and what is true of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Computed {
-    /// Number of the record.
-    pub(crate) seed: u64,
     /// The record.
     pub(crate) record: Record,
     /// The path, with the mode of the wave.
     pub(crate) passage: Passage,
     /// Speed of the wave of the mode at the mean frequency of the source, m/s.
     pub(crate) speed: f64,
+}
+
+/// Conditions of a computed record.
+#[derive(Clone, Debug)]
+pub(crate) struct Conditions {
     /// Peak of S over the peak of P.
     pub(crate) s_over_p: f64,
     /// Root mean square of the noise over the peak of the wave of the mode.
     pub(crate) noise: f64,
-    /// True if a wave larger than S follows it.
-    pub(crate) has_later: bool,
+    /// Travel time of P, periods.
+    pub(crate) periods: Range<f64>,
+    /// Resonance of the receiver: its frequency over that of the source, and its quality factor; `None`: it does not ring.
+    pub(crate) resonance: Option<[f64; 2]>,
+    /// Durations of the source between the arrival and the end of the record; `None`: the record has the whole arrival.
+    pub(crate) after: Option<f64>,
+    /// Number of the noise: records that differ in nothing else are repetitions.
+    pub(crate) repetition: u64,
 }
 
 /// A source and its spectrum.
@@ -75,13 +85,17 @@ impl Source {
         Self { samples, spectrum, frequency, inverse: planner.plan_fft_inverse(PADDED) }
     }
 
-    /// The wave, of peak 1, that arrives after `time` samples in a medium of the quality factor `q`.
-    fn arrival(&self, time: f64, q: f64) -> Vec<f64> {
+    /// The wave, of peak 1, that arrives after `time` samples in a medium of the quality factor `q`, by a receiver that may ring.
+    fn arrival(&self, time: f64, q: f64, resonance: Option<[f64; 2]>) -> Vec<f64> {
         let mut lines = self.spectrum.clone();
         for k in 1..PADDED / 2 {
             let f = k as f64 / PADDED as f64;
             let late = time * (1.0 - (f / self.frequency).ln() / (PI * q));
             lines[k] *= (-PI * f * time / q).exp() * Complex::cis(-TAU * f * late);
+            if let Some([over, quality]) = resonance {
+                let f = f / (over * self.frequency);
+                lines[k] /= Complex::new(1.0 - f * f, f / quality);
+            }
             lines[PADDED - k] = lines[k].conj();
         }
         lines[0] = Complex::default();
@@ -102,27 +116,32 @@ impl Source {
     }
 }
 
-/// The record of number `seed`: of P if it is even, else of S. S is 1 to 300 times P, the noise 1 to 20 % of the wave of the mode.
-pub(crate) fn computed(seed: u64) -> Computed {
+/// Returns the usual conditions of the record of number `seed`. S is 1 to 300 times P, the noise 1 to 20 % of the wave of the mode.
+pub(crate) fn usual(seed: u64) -> Conditions {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let mut between = |low: f64, high: f64| Uniform::new(low, high).unwrap().sample(&mut random);
     let s_over_p = between(0.0, 300f64.ln()).exp();
     let noise = between(0.01f64.ln(), 0.2f64.ln()).exp();
-    computed_with(seed, s_over_p, noise)
+    Conditions { s_over_p, noise, periods: 5.0..9.0, resonance: None, after: None, repetition: 0 }
 }
 
-/// The record of number `seed` with this ratio of S to P, and this noise over the peak of the wave of the mode.
-pub(crate) fn computed_with(seed: u64, s_over_p: f64, noise: f64) -> Computed {
+/// Returns true if a wave that is larger than S follows S in the record of number `seed`.
+pub(crate) fn has_later(seed: u64) -> bool {
+    (seed / 2).is_multiple_of(2)
+}
+
+/// Computes the record of number `seed` under these conditions. It is of P if the number is even, else of S.
+pub(crate) fn computed(seed: u64, conditions: &Conditions) -> Computed {
+    let Conditions { s_over_p, noise, resonance, .. } = *conditions;
     let mut random = Pcg64Mcg::seed_from_u64(seed ^ PLACE);
     let mut between = |low: f64, high: f64| Uniform::new(low, high).unwrap().sample(&mut random);
     let longitudinal = seed.is_multiple_of(2);
-    let has_later = (seed / 2).is_multiple_of(2);
     let cycles = if between(0.0, 1.0) < 0.5 { 1.0 } else { 2.0 };
     let period = between(24.0, 50.0);
     let source = Source::new(1.0 / period, cycles);
     let q = between(12.0, 50.0);
     let ratio = between(1.45, 1.75);
-    let p = (period * between(5.0, 9.0)).min(400.0 / ratio);
+    let p = (period * between(conditions.periods.start, conditions.periods.end)).min(400.0 / ratio);
     let [s, later] = [p * ratio, p * ratio * between(1.24, 1.5)];
     let sign = |u: f64| if u < 0.5 { -1.0 } else { 1.0 };
     let heights = [1.0, s_over_p * sign(between(0.0, 1.0)), s_over_p * between(1.3, 2.0)];
@@ -131,12 +150,18 @@ pub(crate) fn computed_with(seed: u64, s_over_p: f64, noise: f64) -> Computed {
     let unit = reversed / if longitudinal { 1.0 } else { heights[1].abs() };
     let crosstalk = between(0.0, 1.0);
     let near_share = between(0.0, 1.0);
-    let waves = [source.arrival(p, q), source.arrival(s, q), source.arrival(later, q)];
+    let waves = [p, s, later].map(|time| source.arrival(time, q, resonance));
     let near = source.near([p, s], longitudinal);
-    let sent = source.samples.clone();
-    let receiver = (0..SAMPLES)
+    let time = if longitudinal { p } else { s };
+    let end = conditions.after.map(|after| QUIET + (time + after * cycles * period) as usize);
+    let samples = end.unwrap_or(SAMPLES).min(SAMPLES);
+    let sent = source.samples[..samples].to_vec();
+    for _ in 0..conditions.repetition * SAMPLES as u64 {
+        let _: f64 = StandardNormal.sample(&mut random);
+    }
+    let receiver = (0..samples)
         .map(|k| {
-            let later = if has_later { heights[2] * sign(heights[1]) * waves[2][k] } else { 0.0 };
+            let later = if has_later(seed) { heights[2] * sign(heights[1]) * waves[2][k] } else { 0.0 };
             let near = near_share * near[k] * if longitudinal { 1.0 } else { heights[1] };
             let gauss: f64 = StandardNormal.sample(&mut random);
             unit * (waves[0][k] + heights[1] * waves[1][k] + later + near)
@@ -158,12 +183,8 @@ pub(crate) fn computed_with(seed: u64, s_over_p: f64, noise: f64) -> Computed {
         longitudinal: Some(longitudinal),
     };
     Computed {
-        seed,
         record: Record { sample_rate: RATE, quiet: 0..QUIET - 8, source: sent, receiver },
         passage,
-        speed: DISTANCE / (if longitudinal { p } else { s }) * RATE,
-        s_over_p,
-        noise,
-        has_later,
+        speed: DISTANCE / time * RATE,
     }
 }

@@ -296,8 +296,9 @@ fn filters_of_the_receiver_that_are_given_do_not_delay_the_wave() {
     };
     let error = |found: &Picks| best(found).0 / SPEED - 1.0;
     assert!(error(&with(Some(8e3))).abs() < 0.01, "{}", error(&with(Some(8e3))));
-    let low = Passage { lowpass: Some(8e3), ..passage() };
-    assert!(error(&picks(&record, &low, 1).unwrap()).abs() > 0.01);
+    let high = Passage { highpass: Some(8e3), ..passage() };
+    let late = error(&picks(&record, &high, 1).unwrap());
+    assert!(late.abs() > 0.01, "{late}");
 }
 
 /// One record of `tests/golden/waves`, with the true speed.
@@ -359,14 +360,18 @@ fn stated_errors_hold_for_waves_in_packings_with_noise_near_field_crosstalk_and_
             }
         }
         passage.reversed = passage.reversed.filter(|_| case != 4);
-        let (found, stddev) = best(&picks(&record, &passage, 1).unwrap());
-        ((found - speed) / stddev).abs() < 1.96
+        let found = picks(&record, &passage, 1).unwrap();
+        let (picked, stddev) = best(&found);
+        (((picked - speed) / stddev).abs() < 1.96, found.contradictory)
     };
     let golden = golden();
     // 800 records determine the share to .008, a sixth of them to .02.
     let (every, [low, high]) = nightly((6, [0.89, 1.0]), (1, [0.925, 0.975]));
     let all: Vec<(usize, &Golden)> = golden.iter().enumerate().step_by(every).collect();
-    let all: Vec<bool> = all.par_iter().map(|(n, of)| pick(*n, n % 7, of)).collect();
-    let inside = all.iter().filter(|inside| **inside).count() as f64 / all.len() as f64;
+    let all: Vec<(bool, bool)> = all.par_iter().map(|(n, of)| pick(*n, n % 7, of)).collect();
+    let inside = all.iter().filter(|(inside, _)| *inside).count() as f64 / all.len() as f64;
     assert!((low..=high).contains(&inside), "{inside} of {}", all.len());
+    // Nothing is wrong with these records.
+    let contradictory = all.iter().filter(|(_, is_contradictory)| *is_contradictory).count();
+    assert!(contradictory * 100 <= all.len(), "{contradictory} of {}", all.len());
 }
