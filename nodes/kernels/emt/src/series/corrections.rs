@@ -20,7 +20,7 @@ const MIDDLE_Z: f64 = 5.0;
 impl ContactCorrections {
     /// The learned ones: `grainlab_calibration` repeats them.
     pub const LEARNED: Self =
-        Self { by_low_ratio: [[-0.075, 0.005, -0.075], [-0.135, 0.926, 0.913]], by_spread: [0.380, -0.536] };
+        Self { by_low_ratio: [[-0.075, 0.005, -0.075], [-0.134, 0.928, 0.918]], by_spread: [0.380, -0.536] };
 
     /// Factors of [`ContactCorrections::by_low_ratio`] at this κ and z.
     pub fn low_ratio_terms(kappa: f64, z: f64) -> [f64; 3] {
