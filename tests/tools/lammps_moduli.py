@@ -297,7 +297,8 @@ def main():
             for friction, share in ways:
                 strain = share * counted["mean_overlap"]
                 stiffness = np.array([apart(probe, s, restart, mode, strain, friction) for mode in MODES]).T
-                row = {**s, "probe_friction": friction, "share": share, **counted, **moduli(stiffness), **ours}
+                sticks = "sticking" if friction == 10 else "unknown"
+                row = {**s, "probe_friction": friction, "probe": sticks, "share": share, **counted, **moduli(stiffness), **ours}
                 known = known or [print(",".join(row), file=out)]
                 print(",".join(f"{v:.8g}" if isinstance(v, float) else str(v) for v in row.values()), file=out)
 

@@ -19,11 +19,12 @@ fn words_and_numbers(text: &str) -> (Vec<String>, Vec<f64>) {
 #[test]
 fn the_built_in_calibration_is_learned_from_its_packings() {
     let (isotropic, anisotropic) = (ensemble("isotropic"), ensemble("anisotropic"));
-    let (files, wide) = (["--isotropic", &isotropic, "--anisotropic", &anisotropic], ensemble("wide"));
-    let learned = grainlab(
-        &[&["calibrate"], &files[..], &["--other", &wide, "--name", "grainlab", "--out", "-"]].concat(),
-    )
-    .assert_code(0);
+    let files = ["--isotropic", &isotropic, "--anisotropic", &anisotropic];
+    let [wide, recipes] = ["wide", "recipes"].map(ensemble);
+    let others = ["--other", &wide, "--other", &recipes];
+    let learned =
+        grainlab(&[&["calibrate"], &files[..], &others, &["--name", "grainlab", "--out", "-"]].concat())
+            .assert_code(0);
     let (words, numbers) = words_and_numbers(&learned.stdout);
     let (known_words, known) = words_and_numbers(&std::fs::read_to_string(BUILTIN).unwrap());
     assert_eq!(words, known_words);

@@ -101,9 +101,10 @@ pub use prior::{Density, Prior, PriorError};
 pub use probe::{NoProbe, Probe, ProbeErrors};
 pub use registry::{free_contact, model, models, recommended};
 pub use series::{
-    ContactCorrections, ContactKind, ContactPrior, Doubted, Interval, LawEstimate, LeftOut, PreparationPrior,
-    PressureEstimate, RowEstimate, SCATTER_TREND, SampleQuantity, Sensitivity, SeriesEstimate, SeriesPrior,
-    SeriesRow, SpeedMode, SpeedSeries, infer_series, series_stddev, simulate_series,
+    ContactCorrections, ContactKind, ContactPrior, Doubted, Interval, LawEstimate, LeftOut, OTHER_CONTACTS,
+    PreparationPrior, PressureEstimate, RowEstimate, SCATTER_TREND, SampleQuantity, Sensitivity,
+    SeriesEstimate, SeriesPrior, SeriesRow, SpeedMode, SpeedSeries, infer_series, series_stddev,
+    simulate_series,
 };
 pub use warning::Warning;
 pub use wave_moduli::WaveModuli;

@@ -33,7 +33,7 @@ pub use check::LeftOut;
 pub use corrections::ContactCorrections;
 pub use doubted::Doubted;
 pub use estimate::{Interval, LawEstimate, PressureEstimate, RowEstimate, SeriesEstimate, infer_series};
-pub use forward::SCATTER_TREND;
+pub use forward::{OTHER_CONTACTS, SCATTER_TREND};
 pub use gain::ContactKind;
 pub use plan::{SampleQuantity, series_stddev, simulate_series};
 pub use prior::{ContactPrior, PreparationPrior, SeriesPrior};

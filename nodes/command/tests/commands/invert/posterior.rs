@@ -38,8 +38,11 @@ fn the_printed_prior_is_read_back_and_changes_nothing_but_rounding() {
     let (_folder, path) = file("prior.toml", &printed);
     let again = grainlab(&["invert", "--print-prior", "--prior", &path], b"");
     assert_eq!(again.stdout, printed);
-    let [without, with] = [&["--model=relaxed"][..], &["--model=relaxed", "--prior", &path]]
-        .map(|flags| json(flags)["results"][0].clone());
+    let [without, with] = [
+        &["--model=relaxed", "--probe=sticking"][..],
+        &["--model=relaxed", "--probe=sticking", "--prior", &path],
+    ]
+    .map(|flags| json(flags)["results"][0].clone());
     for key in ["k", "z", "eps", "eps_stiffness"] {
         let [a, b] = [&without, &with].map(|r| r[key].as_f64().unwrap());
         let sigma = without["sigma"][key].as_f64().unwrap();

@@ -227,6 +227,7 @@ fn a_stated_error_of_pressure_grains_or_stress_widens_the_answer() {
         "--model=relaxed",
         "--grain-shear-modulus=29e9",
         "--poisson=0.2",
+        "--probe=sticking",
     ];
     let sigma = |more: &[&str], key: &str| {
         let answer = json(&[&S1[..], &state, more].concat());
@@ -260,10 +261,30 @@ fn an_answer_without_one_of_the_unknowns_is_not_ok() {
 
 #[test]
 fn a_sample_of_few_grains_has_a_wider_answer() {
-    let state = ["--error=0.01", "--stress-ratio=0", "--size-spread=0", "--model=relaxed"];
+    let state =
+        ["--error=0.003", "--stress-ratio=0", "--size-spread=0", "--model=relaxed", "--probe=sticking"];
     let sigma = |more: &[&str]| {
         json(&[&S1[..], &state, more].concat())["results"][0]["sigma"]["eps"].as_f64().unwrap()
     };
-    assert!(sigma(&["--grains=200"]) > 1.5 * sigma(&[]));
-    assert_eq!(sigma(&["--grains=2000"]), sigma(&[]));
+    let sizes = ["--grains=200", "--grains=2000", "--grains=20000"].map(|grains| sigma(&[grains]));
+    assert!(sizes[0] > 1.3 * sizes[1] && sizes[1] > sizes[2], "{sizes:?}");
+    assert!((sizes[1]..sizes[0]).contains(&sigma(&[])), "{sizes:?}");
+}
+
+#[test]
+fn a_probe_that_is_not_stated_to_stick_widens_the_answer_and_is_noted() {
+    let state = ["--error=0.01", "--stress-ratio=0", "--size-spread=0", "--grains=2000", "--model=relaxed"];
+    let of = |more: &[&str]| json(&[&S1[..], &state, more].concat())["results"][0].clone();
+    let [unstated, unknown, sticking] = [&[][..], &["--probe=unknown"], &["--probe=sticking"]].map(of);
+    assert_eq!(unstated, unknown);
+    assert_eq!((&unknown["z"], &unknown["status"]), (&sticking["z"], &sticking["status"]));
+    let sigma = |result: &Value| result["sigma"]["z"].as_f64().unwrap();
+    assert!((sigma(&unknown) - sigma(&sticking).hypot(0.19)).abs() < 1e-9);
+    let noted = |result: &Value| result["warnings"].to_string().contains("contacts may have slid");
+    assert!(noted(&unknown) && !noted(&sticking), "{unknown} {sticking}");
+    let refused = grainlab(&[&S1[..], &["--probe=stuck"]].concat(), b"");
+    assert!(
+        refused.code == Some(2) && refused.stderr.contains("give sticking if no contact slid"),
+        "{refused:?}"
+    );
 }

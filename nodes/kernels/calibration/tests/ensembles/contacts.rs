@@ -1,10 +1,14 @@
 //! Packings with contacts other than those of the calibration: the corrections of the laws, and the preparations of the prior.
 
-use crate::ours;
+use crate::{csv, ours};
 use grainlab_core::Material;
-use grainlab_emt::{ContactCorrections, ContactKind, Invariants, Moduli, NetworkState, SeriesPrior};
+use grainlab_emt::{
+    ContactCorrections, ContactKind, Invariants, Moduli, NetworkState, OTHER_CONTACTS, RelaxationCalibration,
+    Scatter, ScatterLevels, SeriesPrior,
+};
 use grainlab_testkit::golden::Table;
 use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeMap;
 
 /// One packing under one contact law.
 struct Network {
@@ -136,6 +140,49 @@ fn the_correction_for_the_spread_of_stiffness_is_learned_from_rough_and_linear_c
     for (found, kept) in found.iter().zip(ContactCorrections::LEARNED.by_spread) {
         assert!((found - kept).abs() < 5e-3, "{found} {kept}");
     }
+}
+
+/// The ratio of the moduli determines z where their level is unknown. The residuals of rough packings include the corrections.
+#[test]
+fn the_ratio_of_the_moduli_of_rough_packings_scatters_as_stated() {
+    /// Square of 97.5 % of a Student distribution of 19 degrees of freedom, over 1.96.
+    const OF_FEW: f64 = 1.140;
+    let laws = ours().network().unwrap();
+    let [of_recipe, of_sample] = laws.scatter.matrices();
+    let corrections = ContactCorrections::LEARNED;
+    let t = Table::read("ensembles/rough_recipes.csv");
+    let mut squares: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    for (s, row) in csv::samples("rough_recipes.csv").into_iter().zip(&t.rows) {
+        let mindlin = NetworkState::of(s.pressure, &s.material, s.size_spread, s.stress_ratio);
+        let kappa = mindlin.stiffness_ratio - 0.3 * s.material.stiffness_ratio();
+        let state = NetworkState { stiffness_ratio: kappa, ..mindlin };
+        // The diameter is 0.2 mm.
+        let crossover =
+            ContactKind::crossover(t.number(row, "roughness") / 2e-4, &s.material, s.solid_fraction);
+        let [_, slope] = ContactKind::Rough.gain((s.pressure / crossover).ln(), s.z);
+        let found = Invariants::of(&s.moduli).unwrap();
+        let corrected = |q: usize, ln: f64, law: f64| {
+            let low = ContactCorrections::low_ratio_terms(kappa, s.z);
+            let low: f64 = low.iter().zip(corrections.by_low_ratio[q]).map(|(a, b)| a * b).sum();
+            ln - law
+                - low
+                - corrections.by_spread[q] * ContactCorrections::spread_term(1.0 / 3.0 + slope, s.z)
+        };
+        let bulk = corrected(0, found.ln_theta, laws.theta.value(s.z, &state));
+        let shear = corrected(1, found.ln_shear, laws.shear.value(s.z, &state));
+        let of_size = RelaxationCalibration::sample_variances(laws.grains, Some(s.grains));
+        let growth = RelaxationCalibration::growth(&laws.scatter_by_state, &state)[0];
+        let [recipe, sample] = ScatterLevels::weights(s.z);
+        let of_ratio = |level: &Scatter| level[(0, 0)] + level[(1, 1)] - 2.0 * level[(0, 1)];
+        let stated = growth
+            * (of_ratio(&of_recipe) / recipe[0].powi(2)
+                + of_ratio(&of_sample) * of_size[0] / sample[0].powi(2));
+        squares.entry(s.preparation).or_default().push((shear - bulk).powi(2) / stated);
+    }
+    let mean = |all: &Vec<f64>| all.iter().sum::<f64>() / all.len() as f64;
+    let fitted = OF_FEW * squares.values().map(mean).sum::<f64>() / squares.len() as f64;
+    println!("{fitted:.3} of {} recipes", squares.len());
+    assert!(squares.len() == 20 && (fitted / OTHER_CONTACTS - 1.0).abs() < 0.03, "{fitted}");
 }
 
 /// z within two standard deviations of the prior, and the offsets of the moduli within .002.

@@ -158,9 +158,9 @@ fn judged(every: usize, errors: Errors, prior: &SeriesPrior, is_known: bool) -> 
     found
 }
 
-/// Shares inside the intervals: .92 of all samples; few scatter more.
+/// Checks shares inside the intervals: 0.91 of all samples, which is 0.92 less a standard error; few samples scatter more.
 fn assert_inside(found: &[Found; 4], of_few: f64) {
-    let low = nightly(of_few, 0.92);
+    let low = nightly(of_few, 0.91);
     for (found, name) in found.iter().zip(["z", "eps", "eps_stiffness", "k_t/k_n"]) {
         assert!(found.coverage() > low, "{name}: {}", found.coverage());
     }

@@ -19,6 +19,10 @@ const INSIDE: [f64; 2] = [0.04, 0.92];
 /// each pressure would measure z falsely. The tests of `grainlab_calibration` fit it.
 pub const SCATTER_TREND: f64 = 0.4;
 
+/// Variance of the moduli of packings whose contacts are not those of the calibration, over that of packings whose contacts are. The tests
+/// of `grainlab_calibration` fit it to rough contacts.
+pub const OTHER_CONTACTS: f64 = 1.65;
+
 /// Exponent of the pressure in the rise of z.
 const RISE: f64 = 0.3;
 
@@ -334,7 +338,9 @@ impl<'a> Forward<'a> {
     /// what is a trend per decade.
     pub(super) fn scatter(&self, at: &Linearised) -> [Scatter6; 2] {
         let all = RelaxationCalibration::at_z(at.mean_z, &self.packings);
-        let packings: Scatter6 = all.fixed_view::<SCATTERED, SCATTERED>(0, 0).into_owned();
+        let mut packings: Scatter6 = all.fixed_view::<SCATTERED, SCATTERED>(0, 0).into_owned();
+        let mut of_moduli = packings.fixed_view_mut::<2, 2>(0, 0);
+        of_moduli *= OTHER_CONTACTS;
         let mut parts = [packings * (1.0 - SCATTER_TREND), packings * SCATTER_TREND];
         let alike = [self.level, self.prior.trend * self.prior.trend];
         for (part, variance) in parts.iter_mut().zip(alike) {
