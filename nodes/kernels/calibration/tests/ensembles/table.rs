@@ -11,6 +11,7 @@ use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{Calibration, Estimate, Model, Modulus, Observation, Probe, Relaxed, Status};
 use grainlab_testkit::Random;
 use grainlab_testkit::golden::text;
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 const FILE: &str = "inversion_errors.csv";
@@ -25,7 +26,8 @@ const ROUNDING: f64 = 3e-4;
 const QUANTITIES: [InferredQuantity; 4] =
     [InferredQuantity::Z, InferredQuantity::K, InferredQuantity::Eps, InferredQuantity::EpsStiffness];
 
-const ENSEMBLES: [&str; 7] = ["held_out", "large", "steps", "locked", "wide", "judged", "recipes"];
+const ENSEMBLES: [&str; 8] =
+    ["held_out", "large", "steps", "locked", "wide", "judged", "recipes", "recipes_judged"];
 
 /// Changes what is known of a state.
 type Known = (&'static str, fn(&mut Observation));
@@ -206,6 +208,84 @@ fn the_errors_of_an_unknown_probe_are_those_of_the_rows_of_the_paper() {
     let added = Probe::Unknown.errors().unwrap();
     for (found, kept) in rms.into_iter().zip([added.z, added.k, added.eps]) {
         assert!((found / kept - 1.0).abs() < 0.03, "{rms:?}");
+    }
+}
+
+/// Number of bootstrap samples of the recipes.
+const SAMPLES: usize = 2000;
+
+/// Errors of 1 % are stated and made. A recipe of which less than 70 % of the intervals hold the count is printed with `--nocapture`.
+#[test]
+fn intervals_of_twenty_recipes_that_taught_and_chose_nothing_hold_95_percent_within_a_bootstrap() {
+    let samples: Vec<_> = csv::samples("recipes_judged.csv").into_iter().filter(|s| inside(s)).collect();
+    for (known, forget) in KNOWN {
+        let mut random = Random::new(58);
+        let mut recipes: BTreeMap<&str, [Vec<(f64, f64)>; QUANTITIES.len()]> = BTreeMap::new();
+        let (mut ok, mut beyond, mut answers) = (0, [0; QUANTITIES.len()], 0);
+        for s in &samples {
+            let counted = Counted::of(s);
+            let mut o = with_errors(counted.observation.clone(), 0.01, &mut random);
+            forget(&mut o);
+            let Ok(found) = Relaxed.infer(&o, ours()) else { continue };
+            answers += 1;
+            ok += usize::from(found.status == Status::Ok);
+            let of_recipe = recipes.entry(&s.preparation).or_default();
+            let truths = [counted.z, counted.k, counted.eps, counted.eps_stiffness];
+            for (i, (q, truth)) in QUANTITIES.into_iter().zip(truths).enumerate() {
+                let (Some(value), Some(stddev)) = (found.structure.get(q), found.stddev(q)) else { continue };
+                of_recipe[i].push((value - truth, stddev));
+                let is_beyond = found.status == Status::Ok && (value - truth).abs() > 3.0 * stddev;
+                beyond[i] += usize::from(is_beyond);
+            }
+        }
+        eprintln!("{known}: {answers} of {} answers, {ok} ok, beyond 3 sigma {beyond:?}", samples.len());
+        assert!(
+            ok * 10 >= 9 * samples.len() && beyond.iter().all(|n| n * 1000 <= 15 * ok),
+            "{known}: {beyond:?}"
+        );
+        for (i, q) in QUANTITIES.into_iter().enumerate() {
+            let all: Vec<(&str, &[(f64, f64)])> =
+                recipes.iter().map(|(name, r)| (*name, &r[i][..])).collect();
+            let inside = |of: &[(f64, f64)]| of.iter().filter(|f| f.0.abs() < 1.96 * f.1).count();
+            let share = |of: &[&[(f64, f64)]]| {
+                let n: usize = of.iter().map(|f| f.len()).sum();
+                of.iter().map(|f| inside(f)).sum::<usize>() as f64 / n as f64
+            };
+            let found = share(&all.iter().map(|(_, f)| *f).collect::<Vec<_>>());
+            let mut shares: Vec<f64> = (0..SAMPLES)
+                .map(|_| {
+                    let draw = |_| all[(random.between(0.0, all.len() as f64) as usize).min(all.len() - 1)].1;
+                    share(&(0..all.len()).map(draw).collect::<Vec<_>>())
+                })
+                .collect();
+            shares.sort_by(f64::total_cmp);
+            let [low, high] = [shares[SAMPLES / 40], shares[SAMPLES - 1 - SAMPLES / 40]];
+            let flat: Vec<(f64, f64)> = all.iter().flat_map(|(_, f)| f.iter().copied()).collect();
+            let mut needed: Vec<f64> = flat.iter().map(|f| f.0.abs() / f.1 / 1.96).collect();
+            needed.sort_by(f64::total_cmp);
+            let needed = needed[flat.len() * 19 / 20];
+            let n = flat.len() as f64;
+            let [bias, rms, stated] = [
+                flat.iter().map(|f| f.0).sum::<f64>() / n,
+                (flat.iter().map(|f| f.0 * f.0).sum::<f64>() / n).sqrt(),
+                flat.iter().map(|f| f.1).sum::<f64>() / n,
+            ];
+            eprintln!(
+                "  {q}: inside {found:.3}, bootstrap {low:.3} to {high:.3}; bias {bias:+.4}, rms {rms:.4}, mean stated {stated:.4}, \
+                 stated over needed {:.2}",
+                1.0 / needed
+            );
+            let mut poor = 0;
+            for (name, f) in &all {
+                let of_recipe = inside(f) as f64 / f.len() as f64;
+                if of_recipe < 0.7 {
+                    let mean = f.iter().map(|f| f.0).sum::<f64>() / f.len() as f64;
+                    eprintln!("    {name}: {of_recipe:.2}, mean error {mean:+.3}");
+                    poor += 1;
+                }
+            }
+            assert!(high >= 0.95 && found >= 0.91 && poor <= 3, "{known}, {q}: {found}, {poor}");
+        }
     }
 }
 
