@@ -26,9 +26,9 @@ Examples:
   Prior knowledge, and draws that ArviZ, corner and pandas read:
     grainlab invert --print-prior > prior.toml
     grainlab invert --g12 104.2e6 --g13 112.4e6 --theta 136e6 --pressure 50e3 --stress-ratio 0 --size-spread 0 --error 0.01 \\
-      --model relaxed --prior prior.toml --draws draws.json
+      --probe sticking --model relaxed --prior prior.toml --draws draws.json
   Probabilities of models that state an error of the same moduli:
-    grainlab invert --g12 104.2e6 --g13 112.4e6 --theta 136e6 --pressure 50e3 --error 0.01 --calibration grainlab --evidence
+    grainlab invert --g12 104.2e6 --g13 112.4e6 --theta 136e6 --pressure 50e3 --error 0.01 --probe sticking --calibration grainlab --evidence
   Many states, or the output of an analysis:
     grainlab invert --table states.csv --format csv
     grainlab analyze recordings/runs/* --format csv | grainlab invert --table - --gamma contact --format csv

@@ -18,7 +18,7 @@ from .scenes import toml, warn, whole
 COLUMNS = {
     **{m: f"{m}_pa" for m in ("g12", "g13", "theta", "c11", "c33", "c13", "pressure")},
     **{f"{m}_sigma": f"{m}_sigma_pa" for m in ("g12", "g13", "theta", "c11", "c33", "c13", "pressure")},
-    **{name: name for name in ("phi", "phi_sigma", "size_spread", "grains", "sample")},
+    **{name: name for name in ("phi", "phi_sigma", "size_spread", "grains", "probe", "sample")},
     **{"stress_ratio": "axial_q_over_p", "stress_ratio_sigma": "axial_q_over_p_sigma"},
     **{"gamma": "gamma_over_delta", "gamma_sigma": "gamma_over_delta_sigma"},
     **{"shear_modulus": "grain_shear_modulus_pa", "shear_modulus_sigma": "grain_shear_modulus_sigma_pa"},
@@ -42,7 +42,8 @@ def invert(
 
     Keywords of a state, each a number or an array (n,): ``pressure``; the moduli ``g12 g13 theta c11 c33 c13``; ``shear_modulus`` of the
     grains, all in Pa; ``poisson_ratio``, ``phi``, ``stress_ratio`` (axial minus lateral stress over pressure), ``size_spread``, ``gamma`` (deviatoric over volumetric strain),
-    all without unit; ``grains``, their number, 2000 if not known; ``sample``. Only emt and hertz-mindlin use ``phi``, only emt and the ratios ``gamma``. Each may have an error, a standard deviation in its unit: ``g12_sigma``. NaN, None
+    all without unit; ``grains``, their number, any from 100 to 20,000 if unknown; ``probe``, "sticking" if no contact slid while the moduli
+    were measured, else "unknown", which widens the errors; ``sample``. Only emt and hertz-mindlin use ``phi``, only emt and the ratios ``gamma``. Each may have an error, a standard deviation in its unit: ``g12_sigma``. NaN, None
     and what a mask hides are not known. ``error`` is the relative error of each modulus without its own, or of each speed; None, as on the command
     line: unknown, which a warning says, and 0.01 for speeds whose contacts are not known.
 
@@ -65,7 +66,7 @@ def invert(
     chains, the same for the same seed: ``grainlab.to_arviz(found["draws"])``. Its log_likelihood is that of each modulus given the
     others, for moduli in MPa.
 
-    >>> found = grainlab.invert(g12=104.2e6, g13=112.4e6, theta=136e6, pressure=50e3)
+    >>> found = grainlab.invert(g12=104.2e6, g13=112.4e6, theta=136e6, pressure=50e3, probe="sticking")
     >>> found["z"], found["z_sigma"]
     >>> frame = grainlab.invert(table=pandas.read_csv("states.csv"))
     """
