@@ -298,7 +298,7 @@ def main():
                 strain = share * counted["mean_overlap"]
                 stiffness = np.array([apart(probe, s, restart, mode, strain, friction) for mode in MODES]).T
                 sticks = "sticking" if friction == 10 else "unknown"
-                row = {**s, "probe_friction": friction, "probe": sticks, "share": share, **counted, **moduli(stiffness), **ours}
+                row = {**s, "strain_friction": friction, "probe": sticks, "share": share, **counted, **moduli(stiffness), **ours}
                 known = known or [print(",".join(row), file=out)]
                 print(",".join(f"{v:.8g}" if isinstance(v, float) else str(v) for v in row.values()), file=out)
 

@@ -83,7 +83,8 @@ pub enum Warning {
     GrainsUnknown,
     /// Contacts may have slid while the moduli were measured; [`crate::Probe::Unknown`] adds its errors.
     #[error(
-        "contacts may have slid while the moduli were measured: standard deviations of {} in z, {} in k and {} in eps are added",
+        "contacts may have slid while the moduli were measured: standard deviations of {} in z, {} in k and {} in eps \
+         are added, and eps_stiffness widens with eps",
         UNKNOWN_PROBE.z, UNKNOWN_PROBE.k, UNKNOWN_PROBE.eps
     )]
     ProbeUnknown,

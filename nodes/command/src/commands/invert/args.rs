@@ -146,7 +146,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", conflicts_with = "table", value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) grains: Option<u32>,
     /// Whether contacts slid while the moduli were measured: sticking if none did, as in a small strain at high friction; unknown
-    /// widens z, k and eps of relaxed and free-contact [default: unknown; sticking for speeds, and tables of grainlab analyze]
+    /// widens z, k and eps of relaxed and free-contact [default: unknown; sticking for speeds, and for tables of grainlab analyze, which have
+    /// ti_c11_pa and eps_stiffness, but for its method probe]
     #[arg(long, value_name = "PROBE", conflicts_with_all = ["speeds", "plan"])]
     pub(super) probe: Option<Probe>,
     /// Relative one-sigma error of each modulus without its own error, and of each speed without speed_sigma: 0.01 is one percent

@@ -18,8 +18,18 @@ const SAME: f64 = 1e-3;
 const LONGEST: usize = 1 << 20;
 
 /// Columns that describe a row, and set no number of its state.
-const LABELS: [&str; 9] =
-    ["contact_law", "probe", "smooth", "axis_found", "friction", "sample", "source", "member", "step"];
+const LABELS: [&str; 10] = [
+    "contact_law",
+    "method",
+    "probe",
+    "smooth",
+    "axis_found",
+    "friction",
+    "sample",
+    "source",
+    "member",
+    "step",
+];
 
 /// Positions of the inputs in a row. Other columns are ignored.
 pub(crate) struct Columns {
@@ -33,7 +43,7 @@ pub(crate) struct Columns {
     reference_axis: Option<[usize; 3]>,
     /// True if the moduli have the names of the projection that `grainlab analyze` prints.
     projected: bool,
-    /// True if the columns are those of `grainlab analyze` or `grainlab probe`, in which no contact slides.
+    /// True if the columns are those of `grainlab analyze` or `grainlab probe`.
     is_ours: bool,
     /// The columns of [`LABELS`] that are there.
     labels: Vec<(&'static str, usize)>,
@@ -125,7 +135,7 @@ impl Columns {
         Ok(Self {
             inputs,
             projected: stiffness.is_some() || is_projection,
-            is_ours: is_projection || find("axis_found")?.is_some(),
+            is_ours: find("axis_found")?.is_some() || is_projection && find("eps_stiffness")?.is_some(),
             stiffness,
             reference_axis: axis_columns(&find)?,
             labels,
@@ -213,7 +223,8 @@ impl Columns {
         }
         if let Some(text) = self.label(cells, "probe").filter(|text| !text.is_empty()) {
             state.probe = Some(text.parse().map_err(|e| format!("column probe: {e}"))?);
-        } else if self.is_ours && state.probe.is_none() {
+        } else if self.is_ours && state.probe.is_none() && self.label(cells, "method") != Some("probe") {
+            // In a frozen network and in a wave no contact slides. A strain of unknown size may be too large.
             state.probe = Some(Probe::Sticking);
         }
         let smooth = flag(self.label(cells, "smooth"), "smooth")?;

@@ -47,24 +47,33 @@ pub(super) fn write(state: &State, cases: &[Case], number: Number, path: &Path) 
         case.model.name(),
         100.0 * draws.acceptance
     );
-    unlike(&draws, &estimate).for_each(|line| say!("grainlab: {line}"));
+    unlike(&draws, &estimate, case.prior.is_some()).for_each(|line| say!("grainlab: {line}"));
     Ok(())
 }
 
 /// Notes where the draws of a quantity scatter otherwise than the estimate states.
-pub(super) fn unlike(draws: &Draws, estimate: &Estimate) -> impl Iterator<Item = String> {
-    draws.quantities.iter().filter_map(|quantity| unlike_of(draws, estimate, *quantity))
+pub(super) fn unlike(draws: &Draws, estimate: &Estimate, has_prior: bool) -> impl Iterator<Item = String> {
+    draws.quantities.iter().filter_map(move |quantity| unlike_of(draws, estimate, *quantity, has_prior))
 }
 
-fn unlike_of(draws: &Draws, estimate: &Estimate, quantity: InferredQuantity) -> Option<String> {
+fn unlike_of(
+    draws: &Draws,
+    estimate: &Estimate,
+    quantity: InferredQuantity,
+    has_prior: bool,
+) -> Option<String> {
     let stated = estimate.stddev(quantity)?;
     let values: Vec<f64> = draws.draws.iter().filter_map(|draw| draw.structure.get(quantity)).collect();
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let scatter = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt();
+    let which = if has_prior {
+        "with this prior, rely on the draws"
+    } else {
+        "on packings that taught nothing the stated 95 % intervals hold"
+    };
     (!(1.0 / UNLIKE..UNLIKE).contains(&(scatter / stated))).then(|| {
         format!(
-            "the draws of {} scatter by {scatter:.4}, and the estimate states {stated:.4}: the posterior is not normal; on packings \
-             that taught nothing the stated 95 % intervals hold",
+            "the draws of {} scatter by {scatter:.4}, and the estimate states {stated:.4}: the posterior is not normal; {which}",
             quantity.name()
         )
     })

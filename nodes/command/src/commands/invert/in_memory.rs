@@ -83,7 +83,7 @@ pub fn invert(table: Vec<u8>, by: &By<'_>, stop: &AtomicBool) -> Result<Inverted
             if let (Some((count, seed)), None, None, Ok(state)) = (by.draws, &draws, failed, &answer.state) {
                 let of_row = drawn::drawn(state, case, count, seed);
                 let (of_row, estimate) = of_row.map_err(|e| Failure::new(Exit::PhysicsInvalid, e))?;
-                notes.extend(drawn::unlike(&of_row, &estimate));
+                notes.extend(drawn::unlike(&of_row, &estimate, case.prior.is_some()));
                 draws = Some(of_row);
             }
             let mut inference = answer.inferences(&cases).into_iter().next();

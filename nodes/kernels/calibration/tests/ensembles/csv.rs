@@ -99,7 +99,7 @@ pub(crate) fn paper_counted(probe: Probe) -> Vec<Counted> {
 pub(crate) fn lammps(probe: Probe, keep: impl Fn(&str, f64, f64) -> bool) -> Vec<Counted> {
     let t = Table::read("lammps/moduli.csv");
     let is_kept = |row: &&Vec<String>| {
-        keep(t.cell(row, "law"), t.number(row, "probe_friction"), t.number(row, "share"))
+        keep(t.cell(row, "law"), t.number(row, "strain_friction"), t.number(row, "share"))
     };
     let counted = |row: &Vec<String>| {
         let n = |column| t.number(row, column);

@@ -408,6 +408,14 @@ fn draws_of_an_unknown_probe_are_as_wide_as_its_estimate() {
         // The laws are not linear over three of these standard deviations.
         assert!((0.85..1.15).contains(&ratio), "{quantity}: {ratio}");
     }
+    // What is known of z narrows k as much in the draws as in the estimate.
+    let prior = Prior::parse("[z]\ndistribution = \"normal\"\nmean = 5.3\nstddev = 0.05\n").unwrap();
+    let known = estimate.with_prior(&prior).unwrap().stddev(InferredQuantity::K).unwrap();
+    let posterior = Posterior::new(&Relaxed, &observation, ours(), &prior, settings).unwrap();
+    let k: Vec<f64> = posterior.draws(4000).unwrap().draws.iter().filter_map(|d| d.structure.k).collect();
+    let mean = k.iter().sum::<f64>() / k.len() as f64;
+    let stddev = (k.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / k.len() as f64).sqrt();
+    assert!((0.85..1.15).contains(&(stddev / known)), "{stddev} {known}");
 }
 
 /// Hertz contacts have no length scale, and no pressure scale but E*.

@@ -21,13 +21,15 @@ fn the_probe_is_that_of_its_column_or_of_the_flag_and_our_own_tables_stick() {
     assert_eq!(probe("p_pa,g12_pa", "5e4,300"), None);
     assert_eq!(probe("p_pa,g12_pa,probe", "5e4,300,sticking"), Some(Probe::Sticking));
     assert_eq!(probe("p_pa,g12_pa,probe", "5e4,300,"), None);
-    assert_eq!(probe("p_pa,ti_c11_pa", "5e4,300"), Some(Probe::Sticking));
-    assert_eq!(probe("p_pa,ti_c11_pa,probe", "5e4,300,unknown"), Some(Probe::Unknown));
+    assert_eq!(probe("p_pa,ti_c11_pa", "5e4,300"), None);
+    assert_eq!(probe("p_pa,ti_c11_pa,eps_stiffness", "5e4,300,0"), Some(Probe::Sticking));
+    assert_eq!(probe("p_pa,ti_c11_pa,eps_stiffness,method", "5e4,300,0,probe"), None);
+    assert_eq!(probe("p_pa,ti_c11_pa,eps_stiffness,probe", "5e4,300,0,unknown"), Some(Probe::Unknown));
     assert!(state("p_pa,g12_pa,probe", "5e4,300,slid").unwrap_err().starts_with("column probe: no probe"));
     let flag = State { probe: Some(Probe::Unknown), ..State::default() };
     let columns = |header: &str| Columns::of_header(header.as_bytes(), &[], flag.clone());
     assert!(columns("p_pa,g12_pa,probe").err().unwrap().contains("--probe contradicts the column probe"));
-    let row = columns("p_pa,ti_c11_pa").unwrap().row(b"5e4,300").unwrap().unwrap();
+    let row = columns("p_pa,ti_c11_pa,eps_stiffness").unwrap().row(b"5e4,300,0").unwrap().unwrap();
     assert_eq!(row.state.probe, Some(Probe::Unknown));
 }
 

@@ -92,8 +92,11 @@ impl Likelihood for NetworkLikelihood<'_> {
             let by_eps = by_eps(&slopes, network, z, laws) * errors.eps;
             let by_z = by_z(&slopes, network, [z, eps], laws) * errors.z;
             covariance += by_z * by_z.transpose() + by_eps * by_eps.transpose();
-            let of_z = network.rattlers.slope(z, laws) * errors.z;
-            following[(1, 1)] += (errors.k * errors.k - of_z * of_z).max(0.0);
+            // Sliding lowers z and k together, and k by more than its law gives.
+            let beyond = errors.k - network.rattlers.slope(z, laws) * errors.z;
+            let mut of_k = with_moduli.row_mut(1);
+            of_k -= by_z.transpose() * beyond;
+            following[(1, 1)] += beyond * beyond;
         }
         let residual = data.masked(data.value - SVector::from(invariants.moduli()));
         let scale = state.unit / UNIT;
