@@ -1,6 +1,6 @@
 //! The warnings that apply to the estimate of any model, and the bounds of any structure.
 
-use crate::calibration::{Calibration, NetworkState, Outside};
+use crate::calibration::{Calibration, NetworkState, Outside, inverse_grains};
 use crate::conditions::{Conditions, StrainRatioSource};
 use crate::domain::Domain;
 use crate::error::EmtError;
@@ -136,7 +136,7 @@ pub(crate) fn common(
     let rolls = conditions.contact_law.is_some_and(|law| law.rolling.is_some());
     add(rolls, Warning::RollingResistance);
     if let Some(asymmetry) = observation.asymmetry {
-        let scatter = observation.grains.map_or(0.0, |n| SCATTER / f64::from(n.max(1)).sqrt());
+        let scatter = SCATTER * inverse_grains(observation.grains).sqrt();
         // Independent errors of the entries of a stiffness are asymmetric, too.
         let of_errors = CERTAIN * largest_error(observation).map_or(0.0, |(_, relative)| relative);
         let usual = scatter.max(ASYMMETRY).hypot(of_errors);

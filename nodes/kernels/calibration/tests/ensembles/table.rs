@@ -217,7 +217,7 @@ const SAMPLES: usize = 2000;
 /// Errors of 1 % are stated and made. A recipe of which less than 70 % of the intervals hold the count is printed with `--nocapture`.
 #[test]
 fn intervals_of_twenty_recipes_that_taught_and_chose_nothing_hold_95_percent_within_a_bootstrap() {
-    let samples: Vec<_> = csv::samples("recipes_judged.csv").into_iter().filter(|s| inside(s)).collect();
+    let samples: Vec<_> = csv::samples("recipes_judged.csv").into_iter().filter(inside).collect();
     for (known, forget) in KNOWN {
         let mut random = Random::new(58);
         let mut recipes: BTreeMap<&str, [Vec<(f64, f64)>; QUANTITIES.len()]> = BTreeMap::new();

@@ -19,4 +19,5 @@ pub use laws::{DeviatorLaw, ISOSTATIC, NetworkState, RattlerLaw, ScalingLaw};
 pub(crate) use reach::Outside;
 pub use reach::Reach;
 pub use relaxation::RESPONSE_STDDEV;
+pub(crate) use relaxation::inverse_grains;
 pub use relaxation::{GROUPS, RelaxationCalibration, SCATTERED, Scatter, ScatterLevels};

@@ -22,6 +22,12 @@ const SHARE_OF_SIZE: [f64; SCATTERED] = [0.45, 0.45, 0.45, 0.45, 0.45, 0.45, 1.0
 /// Range of a number of grains that is not known, uniform in its logarithm: from small simulations to large ones.
 const UNKNOWN_GRAINS: [f64; 2] = [100.0, 20_000.0];
 
+/// Returns the inverse of a number of grains; of an unknown number its mean over [`UNKNOWN_GRAINS`].
+pub(crate) fn inverse_grains(grains: Option<u32>) -> f64 {
+    let [low, high] = UNKNOWN_GRAINS;
+    grains.map_or((1.0 / low - 1.0 / high) / (high / low).ln(), |n| 1.0 / f64::from(n.max(1)))
+}
+
 /// Relative standard deviation of the effect of q/p on the stiffness at unchanged contacts. Packings that were pressed at a low
 /// friction and then sheared at a high one have 0.7 to 0.8 of the effect in the packings taught; the tests of `grainlab_calibration` fit
 /// it to `tests/golden/ensembles/locked.csv`.
@@ -142,8 +148,7 @@ impl RelaxationCalibration {
     ///
     /// The rest of the variance is due to other differences between samples of one recipe, and is the same at any size.
     pub fn sample_variances(grains: u32, of: Option<u32>) -> [f64; SCATTERED] {
-        let [low, high] = UNKNOWN_GRAINS;
-        let inverse = of.map_or((1.0 / low - 1.0 / high) / (high / low).ln(), |n| 1.0 / f64::from(n.max(1)));
+        let inverse = inverse_grains(of);
         SHARE_OF_SIZE.map(|share| 1.0 - share + share * f64::from(grains) * inverse)
     }
 
