@@ -144,7 +144,7 @@ impl RelaxationCalibration {
     }
 
     /// Factors of the variances of [`ScatterLevels::sample`] for samples of another size; an unknown size has the mean over
-    /// [`UNKNOWN_GRAINS`].
+    /// 100 to 20,000 grains, uniform in its logarithm.
     ///
     /// The rest of the variance is due to other differences between samples of one recipe, and is the same at any size.
     pub fn sample_variances(grains: u32, of: Option<u32>) -> [f64; SCATTERED] {
