@@ -46,10 +46,14 @@ def test_the_inversion_of_measured_moduli_finds_the_coordination(golden):
 
 def test_stated_errors_of_the_state_widen_the_answer(golden):
     r = grainlab.analyze(golden)
-    given = dict(g12=r["g12_pa"], g13=r["g13_pa"], theta=r["theta_pa"], pressure=r["pressure_pa"], stress_ratio=0.0, size_spread=0.0, error=0.01)
-    exact = grainlab.invert(**given)["z_sigma"]
-    assert grainlab.invert(**given, pressure_sigma=0.1 * r["pressure_pa"])["z_sigma"] > 1.05 * exact
-    assert grainlab.invert(**given, shear_modulus_sigma=3e9)["z_sigma"] > 1.05 * exact
+    given = dict(g12=r["g12_pa"], g13=r["g13_pa"], theta=r["theta_pa"], pressure=r["pressure_pa"], stress_ratio=0.0, size_spread=0.0, probe="sticking", error=0.01)
+    exact = grainlab.invert(**given)["k_sigma"]
+    assert grainlab.invert(**given, pressure_sigma=0.1 * r["pressure_pa"])["k_sigma"] > 1.05 * exact
+    assert grainlab.invert(**given, shear_modulus_sigma=3e9)["k_sigma"] > 1.05 * exact
+    unknown = grainlab.invert(**{**given, "probe": "unknown"})
+    assert unknown["k_sigma"] > 3 * exact and any("contacts may have slid" in text for text in unknown["warnings"])
+    with pytest.raises(ValueError, match="give sticking if no contact slid"):
+        grainlab.invert(**{**given, "probe": "stuck"})
     with pytest.raises(ValueError, match="standard deviation of a quantity that is not there"):
         grainlab.invert(pressure=1e5, g12=1e8, stress_ratio_sigma=0.1)
 
