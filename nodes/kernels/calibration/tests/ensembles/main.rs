@@ -17,7 +17,7 @@ mod table;
 
 use grainlab_calibration::{CalibrationSample, discrepancies, learn};
 use grainlab_core::results::InferredQuantity;
-use grainlab_emt::{Calibration, Moduli, Modulus, Observation, StrainRatioSource};
+use grainlab_emt::{Calibration, Moduli, Modulus, Observation, Status, StrainRatioSource};
 use left_out::truth;
 
 /// Packings not used in any calibration: 24 seeds, 4 frictions, 4 pressures.
@@ -168,6 +168,22 @@ fn three_moduli_or_the_p_moduli_alone_are_worth_what_is_stated() {
     assert!(p_alone.rms < 0.010 && three.rms < 0.02 && p_alone.rms < three.rms);
     for e in [three, p_alone] {
         assert!(e.covered >= 0.90, "{}", e.covered);
+    }
+}
+
+/// The order of recommendation is learned from packings that teach, with γ/Δ of the contacts where a model takes one.
+#[test]
+fn of_two_models_the_one_with_the_smaller_error_of_eps_on_the_packings_that_teach_is_recommended() {
+    let samples = csv::samples("anisotropic.csv");
+    let names = ["relaxed", "directional", "ratio", "ratio-as-printed", "emt"];
+    let rms = names.map(|name| {
+        errors_over(&samples, name, StrainRatioSource::Contact, InferredQuantity::Eps, |m| m).rms
+    });
+    eprintln!("{names:?} {rms:.4?}");
+    for (i, a) in names.iter().enumerate() {
+        for (j, b) in names.iter().enumerate().filter(|(j, _)| rms[i] < rms[*j] - 1e-6) {
+            assert_eq!(grainlab_emt::recommended([(*b, Status::Ok), (*a, Status::Ok)]), Some(*a), "{i} {j}");
+        }
     }
 }
 
