@@ -26,7 +26,7 @@ const REPETITIONS_OF_GROWTH: usize = 3;
 const BY_SIZES: [f64; 2] = [0.0, 500.0];
 const BY_PRESSURE: [f64; 2] = [-0.5, 0.5];
 
-/// |q/p| below which a packing shows the scatter of the laws without that of the effect of a deviator.
+/// Upper limit of |q/p| for a packing that teaches the scatter: the effect of a deviator scatters, too.
 const ISOTROPIC: f64 = 0.05;
 
 /// |q/p| below which a stress counts as isotropic: a servo that has settled leaves up to 5e-6 (`tests/golden/ensembles`).
@@ -41,12 +41,12 @@ struct Reduced<'a> {
     sample: &'a CalibrationSample,
     invariants: Invariants,
     state: NetworkState,
-    /// Root of the weight of its recipe over its number of states: recipes count alike.
+    /// Root of the weight of a state, which makes all recipes count alike.
     of_recipe: f64,
 }
 
 impl Reduced<'_> {
-    /// Weights of the residuals in the fits: the inverse of their standard deviations, times that of the recipe. Recipes count alike.
+    /// Returns the weight of each residual in the fits: the weight of the recipe over the standard deviation of the residual.
     fn weights(&self, known: &Known) -> [f64; SCATTERED] {
         let growth = RelaxationCalibration::growth(&known.by_state, &self.state);
         let of_size = RelaxationCalibration::sample_variances(known.grains, Some(self.sample.grains));
@@ -90,14 +90,14 @@ pub fn network(samples: &[&CalibrationSample]) -> Result<RelaxationCalibration, 
     let mut sizes: Vec<u32> = rows.iter().map(|r| r.sample.grains).collect();
     sizes.sort_unstable();
     let grains = sizes[sizes.len() / 2];
-    // The first laws are fitted as if all scatter were that of samples.
+    // The first fit attributes all scatter to samples.
     let mut known =
         Known { levels: [Scatter::zeros(), Scatter::identity()], by_state: ByState::default(), grains };
     let families = families(&rows);
     for _ in 0..REPETITIONS {
         let mut residuals = Vec::with_capacity(recipes.len());
         for (recipe, family) in &families {
-            // Recipes of a family are pressed alike: those of a single family are left out one by one.
+            // Recipes of a family are pressed alike, so the whole family is left out. A single family is left out recipe by recipe.
             let is_kept = |other: &str| {
                 if families.values().any(|f| f != family) {
                     families[other] != *family
@@ -226,7 +226,7 @@ fn residual(network: &RelaxationCalibration, row: &Reduced<'_>) -> [f64; SCATTER
 /// Residuals of the packings of each recipe.
 type Residuals<'a> = [Vec<(&'a Reduced<'a>, [f64; SCATTERED])>];
 
-/// Returns the family of each recipe: recipes of one file share how they are pressed, and so do those of files that share a recipe.
+/// Returns the family of each recipe. Recipes of one file are pressed alike, and so are recipes of two files that share a recipe.
 fn families<'a>(rows: &[Reduced<'a>]) -> BTreeMap<&'a str, usize> {
     let mut of_file: BTreeMap<&str, usize> = BTreeMap::new();
     let mut of_recipe: BTreeMap<&str, usize> = BTreeMap::new();
@@ -234,7 +234,7 @@ fn families<'a>(rows: &[Reduced<'a>]) -> BTreeMap<&'a str, usize> {
         let next = of_file.len();
         let family = *of_file.entry(row.sample.file.as_str()).or_insert(next);
         let known = *of_recipe.entry(row.sample.preparation.as_str()).or_insert(family);
-        // The family of this file is that of the recipe, too.
+        // A recipe in two files joins their families.
         of_file.values_mut().chain(of_recipe.values_mut()).filter(|f| **f == family).for_each(|f| *f = known);
     }
     of_recipe

@@ -43,7 +43,7 @@ pub(crate) struct Columns {
     reference_axis: Option<[usize; 3]>,
     /// True if the moduli have the names of the projection that `grainlab analyze` prints.
     projected: bool,
-    /// True if the columns are those of `grainlab analyze` or `grainlab probe`.
+    /// True if `grainlab analyze` or `grainlab probe` wrote the table, as its columns show.
     is_ours: bool,
     /// The columns of [`LABELS`] that are there.
     labels: Vec<(&'static str, usize)>,

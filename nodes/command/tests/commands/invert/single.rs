@@ -275,8 +275,8 @@ fn a_sample_of_few_grains_has_a_wider_answer() {
 #[test]
 fn a_probe_that_is_not_stated_to_stick_widens_the_answer_and_is_noted() {
     let state = ["--error=0.01", "--stress-ratio=0", "--size-spread=0", "--grains=2000", "--model=relaxed"];
-    let of = |more: &[&str]| json(&[&S1[..], &state, more].concat())["results"][0].clone();
-    let [unstated, unknown, sticking] = [&[][..], &["--probe=unknown"], &["--probe=sticking"]].map(of);
+    let inferred = |more: &[&str]| json(&[&S1[..], &state, more].concat())["results"][0].clone();
+    let [unstated, unknown, sticking] = [&[][..], &["--probe=unknown"], &["--probe=sticking"]].map(inferred);
     assert_eq!(unstated, unknown);
     assert_eq!((&unknown["z"], &unknown["status"]), (&sticking["z"], &sticking["status"]));
     let sigma = |result: &Value| result["sigma"]["z"].as_f64().unwrap();

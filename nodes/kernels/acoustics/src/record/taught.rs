@@ -70,7 +70,7 @@ fn records_that_end_early_in_the_arrival_teach_the_error_of_what_is_missing() {
     assert_fitted(FIRST..FIRST + nightly(40, 240), ends, 3);
 }
 
-/// Makes the receiver ring at a frequency near that of the source.
+/// Makes the receiver ring near the frequency of the source.
 fn rings(of: &mut Conditions, [over, quality]: [f64; 2]) {
     of.resonance = Some([0.7 + 0.8 * over, 0.5 * 12f64.powf(quality)]);
 }

@@ -49,9 +49,9 @@ pub(crate) struct Conditions {
     pub(crate) noise: f64,
     /// Travel time of P, periods.
     pub(crate) periods: Range<f64>,
-    /// Resonance of the receiver: its frequency over that of the source, and its quality factor; `None`: it does not ring.
+    /// Resonance frequency of the receiver over the frequency of the source, and quality factor; `None` if the receiver does not ring.
     pub(crate) resonance: Option<[f64; 2]>,
-    /// Durations of the source between the arrival and the end of the record; `None`: the record has the whole arrival.
+    /// Time from the arrival to the end of the record, in durations of the source; `None` if the record has the whole arrival.
     pub(crate) after: Option<f64>,
     /// Number of the noise: records that differ in nothing else are repetitions.
     pub(crate) repetition: u64,
