@@ -231,7 +231,8 @@ fn every_packing_outside_is_flagged_or_unknown_and_none_is_confidently_wrong() {
         }
         eprintln!("learned from {name}: {unknown} unknown, the others within {furthest:.1} sigma");
         // One of some 2,000 normal errors is beyond 3.5.
-        assert!(furthest <= 3.5, "{name}: {furthest} sigma");
+        // Of some 4,000 normal errors five are beyond 3.2.
+        assert!(furthest <= 3.3, "{name}: {furthest} sigma");
     }
     assert!(answered >= 450, "{answered}");
 }
