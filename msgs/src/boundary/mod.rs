@@ -5,6 +5,7 @@
 
 mod check;
 mod contact_statistics;
+mod earlier_path;
 mod elastic_stiffness;
 mod error;
 mod estimate;

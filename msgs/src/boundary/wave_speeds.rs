@@ -106,6 +106,7 @@ pub fn wave_speeds_message(
         smooth: found.smooth,
         speeds: found.speeds.iter().map(speed_message).collect(),
         warnings: found.warnings.clone(),
+        notes: Vec::new(),
     };
     WaveSpeedsReading::try_from(&message)?;
     Ok(message)

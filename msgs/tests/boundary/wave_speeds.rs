@@ -50,6 +50,7 @@ fn sent() -> msg::WaveSpeeds {
         smooth: true,
         speeds: vec![compression, shear],
         warnings: vec!["send less".to_owned()],
+        notes: Vec::new(),
     }
 }
 

@@ -34,9 +34,8 @@ pub fn measure(state: &State) -> Result<Measurement, Error> {
         return Err(failed(&"the packing has no grains"));
     }
     state.packing.check().and_then(|()| state.packing.check_consistency()).map_err(|e| failed(&e))?;
-    let mut report = analyze(&state.packing, &Settings::default()).map_err(|e| failed(&e))?.report;
-    let position = state.position().inspect(|position| position.judge_strain(&mut report));
-    let found = position.and_then(|p| p.warning()).into_iter().chain(warnings(&state.packing, &report));
-    let new: Vec<_> = found.filter(|w| !state.notes.contains(w)).collect();
-    Ok(Measurement { report, warnings: state.notes.iter().cloned().chain(new).collect() })
+    let report = analyze(&state.packing, &Settings::default()).map_err(|e| failed(&e))?.report;
+    let found = warnings(&state.packing, &report).into_iter().filter(|w| !state.notes.contains(w));
+    let warnings = state.notes.iter().cloned().chain(found).collect();
+    Ok(Measurement { report, warnings })
 }

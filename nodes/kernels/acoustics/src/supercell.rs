@@ -83,6 +83,7 @@ pub fn supercell(packing: &Packing, indices: [i32; 3], copies: u32) -> Result<Su
         spins: times(&packing.spins),
         positions,
         contacts,
+        path: None,
         ..*packing
     };
     Ok(Supercell { packing: repeated, path, along })

@@ -2,29 +2,10 @@
 
 use crate::error::ExperimentError;
 use grainlab_core::stress::Stress;
-use grainlab_core::{Cell, Mat3, Packing};
+use grainlab_core::{Cell, EngineProgram, Mat3, Packing};
 use grainlab_dem::{Compute, EnergyBalance, EngineSettings};
 use grainlab_scene::Scene;
-use serde::{Deserialize, Serialize};
-use std::fmt::{self, Debug};
-
-/// The program of an engine that is not ours, as recorded with each packing.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct EngineProgram {
-    /// Name, as a run names its engine.
-    pub name: String,
-    /// Version, as the program states it.
-    pub version: String,
-    /// Number of its processes.
-    pub ranks: u32,
-}
-
-impl fmt::Display for EngineProgram {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, version, ranks } = self;
-        write!(f, "{name} {version}, {ranks} {}", if *ranks == 1 { "rank" } else { "ranks" })
-    }
-}
+use std::fmt::Debug;
 
 /// Measurements of an engine on its present contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -17,7 +17,6 @@ mod run_state;
 mod simulation;
 
 pub use dem_engine::Dem;
-pub use engine::{EngineFactory, EngineProgram, Observables, ParticleEngine};
+pub use engine::{EngineFactory, Observables, ParticleEngine};
 pub use error::ExperimentError;
-pub use run_state::{PathPosition, StrainOrigin, engine_program};
 pub use simulation::{Simulation, StepOutcome};

@@ -6,8 +6,8 @@ use crate::error::ExperimentError;
 use crate::gas::{EventDriven, at_random, is_event_driven};
 use crate::phase_settings::phase_settings;
 use crate::progress::{Progress, solid_fraction};
-use crate::run_state::{RunState, SavedEngine, StrainOrigin, belongs};
-use grainlab_core::{Mat3, Packing, ServoLaw, SymTensor};
+use crate::run_state::{RunState, SavedEngine, belongs};
+use grainlab_core::{Mat3, Packing, PathPosition, ServoLaw, StrainOrigin, SymTensor};
 use grainlab_dem::{Compute, EnergyBalance};
 use grainlab_scene::{PathState, PhaseEnded, PhaseKind, Scene, Travelled};
 use grainlab_servo::{ServoInput, ServoRequest};
@@ -434,8 +434,9 @@ impl Simulation {
     /// # Errors
     /// An engine that does not answer.
     pub fn packing(&self) -> Result<Packing, ExperimentError> {
-        let packing = self.engine.packing(self.progress.deformation)?;
-        Ok(Packing { friction: self.progress.friction, ..packing })
+        let (p, engine) = (&self.progress, self.engine.program().cloned());
+        let path = PathPosition::new(p.path.phase, p.within_phase, p.strain_origin, engine);
+        Ok(Packing { friction: p.friction, path: Some(path), ..self.engine.packing(p.deformation)? })
     }
 
     /// The part of the state that is not in the packing. [`Simulation::resume`] takes both.

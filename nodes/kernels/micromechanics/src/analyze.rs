@@ -97,7 +97,7 @@ pub fn analyze(packing: &Packing, settings: &Settings) -> Result<Analysis, Micro
         contact: fabric.orientation.overlap_fit.map(|fit| fit.g),
     };
     let tolerance = sampling_tolerance(contacts.grains);
-    let report = PackingReport {
+    let mut report = PackingReport {
         step: packing.step,
         material: packing.material,
         law: packing.law,
@@ -114,6 +114,7 @@ pub fn analyze(packing: &Packing, settings: &Settings) -> Result<Analysis, Micro
         fabric,
         elasticity,
     };
+    packing.path.iter().for_each(|path| path.judge_strain(&mut report));
     Ok(Analysis { report, probe, unsolved })
 }
 

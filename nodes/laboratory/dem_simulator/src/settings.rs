@@ -2,7 +2,7 @@
 
 use grainlab_core::Packing;
 use grainlab_dem::{Compute, ComputeError, Simd};
-use grainlab_experiment::{Dem, EngineFactory, engine_program};
+use grainlab_experiment::{Dem, EngineFactory};
 use grainlab_lammps::Lammps;
 use grainlab_msgs::{Topic, topics};
 use grainlab_node_kit::{ParameterSpec, Parameters, Range, parameters};
@@ -98,20 +98,17 @@ impl Settings {
         &self,
         from: Option<(&Packing, &[u8])>,
     ) -> Result<Arc<dyn EngineFactory>, String> {
-        let made_by = from.and_then(|(_, run_state)| engine_program(run_state));
-        let recorded = made_by.as_ref().map_or(OURS, |program| program.name.as_str());
+        let resumed = from.filter(|(_, run_state)| !run_state.is_empty()).map(|(packing, _)| packing);
+        let made_by = resumed.and_then(|packing| packing.path.as_ref()?.engine.as_ref());
+        let recorded = made_by.map_or(OURS, |program| program.name.as_str());
         let wanted = if self.engine.is_empty() { recorded } else { &self.engine };
-        let is_new = from.is_none_or(|(_, run_state)| run_state.is_empty());
         // A gas is ours under any engine.
-        let is_changed = |(packing, run_state): (&Packing, &[u8])| {
-            !run_state.is_empty() && wanted != recorded && !packing.contacts.is_empty()
-        };
-        if from.is_some_and(is_changed) {
+        if resumed.is_some_and(|packing| wanted != recorded && !packing.contacts.is_empty()) {
             log::warn!("the run continues with the engine {wanted}; its last packing was made by {recorded}");
         }
         match wanted {
             // A run that continues with another engine keeps its arguments.
-            OURS if is_new && self.lammps.command != LAMMPS_COMMAND => {
+            OURS if resumed.is_none() && self.lammps.command != LAMMPS_COMMAND => {
                 Err("engine_command is given, and the engine is grainlab: name that of the command (--engine lammps)".into())
             }
             OURS => Ok(Arc::new(Dem)),

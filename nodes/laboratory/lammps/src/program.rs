@@ -2,7 +2,8 @@
 
 use crate::folder::Folder;
 use crate::refusal::refused;
-use grainlab_experiment::{EngineProgram, ExperimentError};
+use grainlab_core::EngineProgram;
+use grainlab_experiment::ExperimentError;
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::process::CommandExt;

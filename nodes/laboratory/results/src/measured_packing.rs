@@ -2,11 +2,10 @@
 
 use crate::probe::ProbeView;
 use crate::quantities::entries;
-use grainlab_core::Packing;
 use grainlab_core::quantities;
 use grainlab_core::quantity::{Quantity, Shape::Scalar};
 use grainlab_core::results::{PackingReport, QUANTITIES, warnings};
-use grainlab_experiment::PathPosition;
+use grainlab_core::{Packing, PathPosition};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 /// A report, and its source.
@@ -33,9 +32,9 @@ pub static ORIGIN: &[Quantity<MeasuredPacking>] = quantities! { MeasuredPacking:
     "source" "" "" "file, recording or topic" Scalar, |m| m.source.clone();
     "step" "" "1" "solver step of the packing" Scalar, |m| m.step;
     "phase" "" "1" "number of the phase of the scene, from 1; 0 for the packing that a run started from"
-        Scalar, |m| m.position.map(|p| p.phase as u64);
+        Scalar, |m| m.position.as_ref().map(|p| p.phase as u64);
     "end_of_phase" "" "" "whether the phase met its end conditions; a packing within a phase need not be at rest"
-        Scalar, |m| m.position.map(|p| p.end_of_phase);
+        Scalar, |m| m.position.as_ref().map(|p| p.end_of_phase);
     "wall_time_s" "" "s" "wall time of the measurement" Scalar, |m| m.seconds;
 };
 
@@ -46,21 +45,13 @@ impl MeasuredPacking {
         Self { source, step, report, position: None, seconds: None, warnings: Vec::new(), probe: None }
     }
 
-    /// Sets the position in the run, and removes the strain where that position does not tell it.
-    #[must_use]
-    pub fn at(mut self, position: Option<PathPosition>) -> Self {
-        self.position = position;
-        position.inspect(|p| p.judge_strain(&mut self.report));
-        self
-    }
-
-    /// Adds the notes of the packing's reader, and the warnings about the packing and its measurement, each once.
+    /// Adds the position of the packing, the notes of its reader, and the warnings about the packing and its measurement, each
+    /// once.
     #[must_use]
     pub fn doubted(mut self, packing: &Packing, notes: &[String]) -> Self {
-        let found =
-            self.position.and_then(|p| p.warning()).into_iter().chain(warnings(packing, &self.report));
-        let new: Vec<_> = found.filter(|w| !notes.contains(w)).collect();
-        self.warnings.extend(notes.iter().cloned().chain(new));
+        self.position.clone_from(&packing.path);
+        let found = warnings(packing, &self.report).into_iter();
+        self.warnings.extend(notes.iter().cloned().chain(found.filter(|w| !notes.contains(w))));
         self
     }
 }
@@ -80,8 +71,7 @@ impl Serialize for MeasuredPacking {
 pub(crate) mod tests {
     use super::*;
     use crate::printer::Printed;
-    use grainlab_core::{Cell, Contact, Vec3};
-    use grainlab_experiment::StrainOrigin;
+    use grainlab_core::{Cell, Contact, StrainOrigin, Vec3};
     use grainlab_micromechanics::{Settings, analyze};
 
     /// One grain touching its own images along the three edges, or none of them.
@@ -138,8 +128,8 @@ pub(crate) mod tests {
     #[test]
     fn a_strain_that_was_not_counted_is_unknown() {
         let at = |strain_origin| {
-            let position = PathPosition { phase: 1, end_of_phase: true, strain_origin };
-            serde_json::to_value(measured(&lattice(true)).at(Some(position))).unwrap()["strain"].clone()
+            let path = Some(PathPosition::new(1, false, strain_origin, None));
+            serde_json::to_value(measured(&Packing { path, ..lattice(true) })).unwrap()["strain"].clone()
         };
         assert!(at(StrainOrigin::Unknown).is_null());
         for origin in [StrainOrigin::FirstStep, StrainOrigin::Reference] {

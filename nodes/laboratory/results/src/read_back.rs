@@ -112,9 +112,9 @@ pub(crate) struct EngineRange {
 }
 
 fn engines(about: &BTreeMap<u64, About>) -> Vec<EngineRange> {
-    let simulated = about.values().filter(|a| a.position.is_some());
-    let named =
-        simulated.map(|a| (a.engine.as_ref().map_or("grainlab".to_owned(), ToString::to_string), a.step));
+    let simulated = about.values().filter_map(|a| Some((a.position.as_ref()?, a.step)));
+    let named = simulated
+        .map(|(path, step)| (path.engine.as_ref().map_or("grainlab".to_owned(), ToString::to_string), step));
     let mut found: Vec<EngineRange> =
         named.map(|(engine, from_step)| EngineRange { engine, from_step }).collect();
     found.dedup_by(|next, known| next.engine == known.engine);
@@ -223,7 +223,8 @@ pub fn read(recording: &Recording) -> ReadBack {
         back.of_instruments.extend(others);
         match (about.packing, about.report) {
             (Some(_), Some(report)) => {
-                let mut measured = MeasuredPacking::new(source.clone(), report).at(about.position);
+                let mut measured = MeasuredPacking::new(source.clone(), report);
+                measured.position = about.position;
                 let report = &measured.report;
                 measured.warnings =
                     report.elasticity.as_ref().err().map(ToString::to_string).into_iter().collect();

@@ -51,9 +51,8 @@ pub(crate) fn analyze_one<'py>(
     let owner = packing.clone().unbind();
     let found =
         parallel::detach(py, move |_| measure(owner.get().packing(), &settings))?.map_err(error::physics)?;
-    let (packing, position) = (packing.get().packing(), packing.get().position());
     let without = found.why_no_stiffness();
-    let found = MeasuredPacking::new(String::new(), found.report).at(position).doubted(packing, &[]);
+    let found = MeasuredPacking::new(String::new(), found.report).doubted(packing.get().packing(), &[]);
     let doubts = found.warnings.iter().cloned().chain(without).collect();
     Ok((values::quantities(py, QUANTITIES, &found.report)?, doubts))
 }

@@ -199,7 +199,7 @@ impl Run {
         let header = measured.map(str::to_owned).chain(inferred).chain(["by".to_owned()]);
         let row = |s: &InvertedPacking| {
             let r = &s.packing.report;
-            let phase = s.packing.position.filter(|p| p.phase > 0).map_or_else(String::new, |p| {
+            let phase = s.packing.position.as_ref().filter(|p| p.phase > 0).map_or_else(String::new, |p| {
                 self.timeline.phase_name(p.phase as u32 - 1 + self.timeline.first_phase())
             });
             let best = recommended(s);

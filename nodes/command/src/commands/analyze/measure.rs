@@ -3,7 +3,6 @@
 use crate::commands::packings::Found;
 use crate::offline_recording::Recorded;
 use grainlab_core::results::{NoStiffness, yields};
-use grainlab_experiment::PathPosition;
 use grainlab_micromechanics::network::Springs;
 use grainlab_micromechanics::probe::{StrainProbe, StrainProbeResult};
 use grainlab_micromechanics::{Settings, analyze};
@@ -28,9 +27,8 @@ pub(crate) fn measure(
     let named = |e: &dyn std::fmt::Display| format!("{source}, step {}: {e}", packing.step);
     let found = analyze(packing, settings).map_err(|e| named(&e))?;
     let why_none = found.why_no_stiffness();
-    let position = PathPosition::of(&imported.run_state);
     let mut shown =
-        MeasuredPacking::new(source.to_owned(), found.report).at(position).doubted(packing, &imported.notes);
+        MeasuredPacking::new(source.to_owned(), found.report).doubted(packing, &imported.notes);
     shown.step = imported.step;
     shown.seconds = Some(began.elapsed().as_secs_f64());
     let (report, probe) = (&shown.report, found.probe.as_ref());

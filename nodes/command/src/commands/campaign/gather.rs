@@ -128,7 +128,7 @@ fn of_member<'a>(member: &'a Member, run: &Path) -> Result<Found<'a>, String> {
         return Err(failed(complaint));
     }
     let name = |found: &InvertedPacking| {
-        let phase = found.packing.position.and_then(|p| p.phase.checked_sub(1));
+        let phase = found.packing.position.as_ref().and_then(|p| p.phase.checked_sub(1));
         phase.and_then(|n| scene.phases.get(n)).map_or_else(String::new, |p| p.name.clone())
     };
     let state = |found| State { member, phase: name(&found), found };

@@ -1,7 +1,7 @@
 //! Warnings about a measured packing.
 
 use super::{ElasticStiffness, PackingReport};
-use crate::{Packing, SymmetryClass, Vec3, contact_search, non_rattlers, solid_like_share};
+use crate::{Packing, PathPosition, SymmetryClass, Vec3, contact_search, non_rattlers, solid_like_share};
 use std::collections::HashMap;
 
 /// Unbalanced force ratio above which a packing is not at rest, so that the stiffness of the network is not
@@ -55,12 +55,17 @@ const LEAST_EPS: f64 = 0.01;
 /// isostaticity have 1e-3 and more.
 const NO_RESISTANCE: f64 = 1e-6;
 
-/// Warnings about `packing` and its measurement: forces or torques that do not balance, motion, copies, contacts that its
+/// Returns warnings about `packing` and its measurement: a place within a phase, forces or torques that do not balance, motion, copies, contacts that its
 /// positions, its law or its friction contradict, bounds that do not hold. None for most packings at rest.
 pub fn warnings(packing: &Packing, report: &PackingReport) -> Vec<String> {
     let contacts = contact_search::doubts(packing).unwrap_or_else(|e| vec![e.to_string()]);
+    let path = packing.path.as_ref().and_then(PathPosition::warning);
     let others = [moving(packing), twisted(packing, report), copied(packing), crystalline(packing)];
-    report_warnings(report).into_iter().chain(others.into_iter().flatten()).chain(contacts).collect()
+    path.into_iter()
+        .chain(report_warnings(report))
+        .chain(others.into_iter().flatten())
+        .chain(contacts)
+        .collect()
 }
 
 /// Returns warnings about the geometry of a packing at rest, which any recorded packing may have: deep overlaps, contacts that

@@ -315,6 +315,7 @@ impl Engine {
             law: s.law,
             friction: self.settings.friction,
             time_step: s.time_step,
+            path: None,
         }
     }
 }

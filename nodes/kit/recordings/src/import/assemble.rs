@@ -204,6 +204,7 @@ pub(super) fn packing(
         law: settings.law,
         friction: settings.friction,
         time_step: state.time_step,
+        path: None,
     }
     .validated()?;
     packing.contacts = match listed {
