@@ -197,7 +197,9 @@ mod tests {
     #[test]
     fn a_list_that_was_added_later_is_read_as_empty_without_a_note() {
         let wanted = schema(WANTED, INNER);
-        for (line, shown) in [("Inner[] all\n", "all"), ("string[] texts\n", "texts"), ("float64[<=3] few\n", "few")] {
+        for (line, shown) in
+            [("Inner[] all\n", "all"), ("string[] texts\n", "texts"), ("float64[<=3] few\n", "few")]
+        {
             let written = schema(&WANTED.replace("Inner[] all\n", ""), INNER);
             let wanted = schema(&WANTED.replace("Inner[] all\n", line), INNER);
             let Comparison::Mapped(mapping) = written.compare(&wanted) else { panic!("{line}") };
@@ -205,7 +207,10 @@ mod tests {
             let values = vec![Value::U8(0), Value::F64(1.0), Value::F64(0.2), Value::Text("a".into())];
             let message = Message { kind: written.root().clone(), values };
             let read = wanted.decode(&mapping.apply(&message.encode()).unwrap()).unwrap();
-            assert!(crate::Shown::new(&read).json().contains(&format!(r#""{shown}":[],"name":"a""#)), "{read:?}");
+            assert!(
+                crate::Shown::new(&read).json().contains(&format!(r#""{shown}":[],"name":"a""#)),
+                "{read:?}"
+            );
         }
         // A list with another name is not one that was added.
         let renamed = schema(&WANTED.replace("[] all", "[] every"), INNER);

@@ -1,11 +1,13 @@
 //! `Packing`: the complete mechanical state.
 
 use super::check::{Check, header, row_major};
+use super::earlier_path::earlier_path;
 use super::error::BoundaryError;
 use crate::std_msgs::Header;
 use crate::{msg, stamp};
-use super::earlier_path::earlier_path;
-use grainlab_core::{Cell, Contact, EngineProgram, Mat3, Material, Packing, PathPosition, StrainOrigin, Vec3};
+use grainlab_core::{
+    Cell, Contact, EngineProgram, Mat3, Material, Packing, PathPosition, StrainOrigin, Vec3,
+};
 
 const CHECK: Check = Check("Packing");
 

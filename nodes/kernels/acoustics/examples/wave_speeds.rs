@@ -34,6 +34,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             d.x, d.y, d.z, p.x, p.y, p.z, m.wave.speed
         );
     }
-    found.warnings.iter().for_each(|w| println!("note: {w}"));
+    found.notes.iter().for_each(|w| println!("note: {w}"));
     Ok(())
 }

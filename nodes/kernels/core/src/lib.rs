@@ -22,6 +22,7 @@
 //! - `control`: what a loading path asks of each strain component, and the law that answers
 //! - `waves`: plane waves in a medium, measured speeds of them
 //! - [`results`]: what is measured on a packing
+//! - [`notes`]: limitations of results, and reasons, as codes and sentences
 //! - [`quantity`]: tables of what is measured: key, symbol, unit, meaning, value
 
 mod bins;
@@ -36,6 +37,7 @@ pub mod instruction_sets;
 pub mod lanes;
 mod law_comparison;
 mod material;
+pub mod notes;
 mod overlaps;
 mod packing;
 mod path;

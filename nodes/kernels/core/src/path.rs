@@ -1,5 +1,6 @@
 //! The position of a packing on the loading path of its run.
 
+use crate::notes::Note;
 use crate::results::PackingReport;
 use std::fmt;
 
@@ -58,12 +59,9 @@ impl PathPosition {
         Self { phase, end_of_phase: !within_phase, strain_origin, engine }
     }
 
-    /// Returns a warning about a packing that was recorded within a phase.
-    pub fn warning(&self) -> Option<String> {
-        let phase = self.phase;
-        (!self.end_of_phase).then(|| {
-            format!("recorded within phase {phase}, which had not met its end conditions: the packing need not be at rest")
-        })
+    /// Returns a note on a packing that was recorded within a phase.
+    pub fn note(&self) -> Option<Note> {
+        (!self.end_of_phase).then(|| Note::within_phase(self.phase as f64))
     }
 
     /// Removes from the report of the packing what its strain does not tell: γ/Δ of the strain from a state that no phase has

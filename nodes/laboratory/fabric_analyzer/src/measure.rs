@@ -49,8 +49,7 @@ pub enum MeasureError {
 pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, MeasureError> {
     let packing = Packing::try_from(message).map_err(MeasureError::Refused)?;
     let step = packing.step;
-    let found =
-        analyze(&packing, &settings.0).map_err(|reason| MeasureError::Analysis { step, reason })?;
+    let found = analyze(&packing, &settings.0).map_err(|reason| MeasureError::Analysis { step, reason })?;
     let why_no_stiffness = found.why_no_stiffness();
     let message = packing_report_message(message.header.clone(), &found.report)
         .map_err(|reason| MeasureError::Result { step, reason })?;

@@ -1,7 +1,8 @@
 //! One measured packing: the output of `grainlab analyze`, and an entry of `summary.json`.
 
 use crate::probe::ProbeView;
-use crate::quantities::entries;
+use crate::quantities::{NoteView, entries};
+use grainlab_core::notes::{Note, texts};
 use grainlab_core::quantities;
 use grainlab_core::quantity::{Quantity, Shape::Scalar};
 use grainlab_core::results::{PackingReport, QUANTITIES, warnings};
@@ -21,8 +22,8 @@ pub struct MeasuredPacking {
     pub position: Option<PathPosition>,
     /// Wall time of the measurement, s; `None` if it was read from a recording.
     pub seconds: Option<f64>,
-    /// Warnings about the packing and its measurement, one line each.
-    pub warnings: Vec<String>,
+    /// Notes on the packing and its measurement.
+    pub notes: Vec<Note>,
     /// Details of the probe, if the stiffness was measured by one.
     pub probe: Option<ProbeView>,
 }
@@ -42,16 +43,17 @@ impl MeasuredPacking {
     /// The report of a packing of this source; the other fields are empty.
     pub fn new(source: String, report: PackingReport) -> Self {
         let step = report.step;
-        Self { source, step, report, position: None, seconds: None, warnings: Vec::new(), probe: None }
+        Self { source, step, report, position: None, seconds: None, notes: Vec::new(), probe: None }
     }
 
     /// Adds the position of the packing, the notes of its reader, and the warnings about the packing and its measurement, each
     /// once.
     #[must_use]
-    pub fn doubted(mut self, packing: &Packing, notes: &[String]) -> Self {
+    pub fn doubted(mut self, packing: &Packing, remarks: &[String]) -> Self {
         self.position.clone_from(&packing.path);
         let found = warnings(packing, &self.report).into_iter();
-        self.warnings.extend(notes.iter().cloned().chain(found.filter(|w| !notes.contains(w))));
+        self.notes.extend(remarks.iter().cloned().map(Note::remark));
+        self.notes.extend(found.filter(|note| !remarks.contains(&note.to_string())));
         self
     }
 }
@@ -61,7 +63,8 @@ impl Serialize for MeasuredPacking {
         let mut map = serializer.serialize_map(None)?;
         entries(&mut map, ORIGIN, self)?;
         entries(&mut map, QUANTITIES, &self.report)?;
-        map.serialize_entry("warnings", &self.warnings)?;
+        map.serialize_entry("warnings", &texts(&self.notes))?;
+        map.serialize_entry("notes", &self.notes.iter().map(NoteView).collect::<Vec<_>>())?;
         map.serialize_entry("probe", &self.probe)?;
         map.end()
     }

@@ -10,6 +10,7 @@ use crate::acoustic::AcousticReport;
 use crate::inference::Inference;
 use crate::measured_packing::MeasuredPacking;
 use crate::measurements::Measurement;
+use grainlab_core::notes::Note;
 use grainlab_core::results::report_warnings;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Report, Topic, TypeInfo, msg, topics};
@@ -226,10 +227,9 @@ pub fn read(recording: &Recording) -> ReadBack {
                 let mut measured = MeasuredPacking::new(source.clone(), report);
                 measured.position = about.position;
                 let report = &measured.report;
-                measured.warnings =
-                    report.elasticity.as_ref().err().map(ToString::to_string).into_iter().collect();
-                measured.warnings.extend(report_warnings(report));
-                measured.warnings.extend(notes);
+                let why_no_stiffness = report.elasticity.as_ref().err().map(Note::from);
+                measured.notes =
+                    why_no_stiffness.into_iter().chain(report_warnings(report)).chain(notes).collect();
                 let (grains, density) = (report.contacts.grains, report.bulk_density());
                 let mut acoustic = speeds.into_iter().map(|(measurement, reading)| AcousticReport {
                     measurement,

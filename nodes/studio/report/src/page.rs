@@ -168,7 +168,7 @@ fn cards(state: &InvertedPacking) -> Html {
             "inferred {{ value }}{% if error %} <span class=\"error\">{{ error }}</span>{% endif %}{% if status != \"ok\" %} ({{ status }}){% endif %}",
             value => j.value(),
             error => format!("({})", j.distance()),
-            status => best.status,
+            status => best.status.name(),
         )
     };
     let counted = InferredQuantity::countable()

@@ -236,10 +236,10 @@ fn inferred(results: &[Inference]) -> BTreeMap<String, Cell> {
         for q in InferredQuantity::ALL {
             if let Some(value) = r.values[q] {
                 cells.insert(format!("{prefix}.{q}"), Cell::Number(value));
-                cells.insert(format!("{prefix}.{q}_stddev"), number(r.sigma[q]));
+                cells.insert(format!("{prefix}.{q}_stddev"), number(r.sigma(q)));
             }
         }
-        cells.insert(format!("{prefix}.status"), Cell::Text(r.status.to_owned()));
+        cells.insert(format!("{prefix}.status"), Cell::Text(r.status.to_string()));
     }
     cells
 }

@@ -2,8 +2,9 @@
 
 use crate::inference::{Inference, Origin};
 use crate::measurements::{Identity, Measurement, Measurements};
-use grainlab_core::{Packing, PathPosition};
+use grainlab_core::notes::Note;
 use grainlab_core::results::{PackingReport, geometry_warnings};
+use grainlab_core::{Packing, PathPosition};
 use grainlab_msgs::boundary::{BoundaryError, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::{Topic, msg, topics};
@@ -40,7 +41,7 @@ pub(super) struct About {
     /// Number of its grains and of its contacts.
     pub(super) packing: Option<(usize, usize)>,
     /// Warnings about its geometry, which the report does not have; of packings at the ends of phases alone.
-    geometry: Vec<String>,
+    geometry: Vec<Note>,
     stamp: Option<Time>,
     pub(super) report: Option<PackingReport>,
     report_stamp: Option<Time>,
@@ -71,11 +72,10 @@ impl About {
     }
 
     /// Notes on the geometry of the packing, and on several results of one kind.
-    pub(super) fn notes(&self) -> Vec<String> {
-        let of_reports = (self.reports_differ && self.disputed_by.is_none()).then(|| {
-            "different reports of this packing were sent: that of the last is the one counted".to_owned()
-        });
-        let confused = self.data.iter().filter_map(|(topic, data)| data.confusion(topic));
+    pub(super) fn notes(&self) -> Vec<Note> {
+        let several = "different reports of this packing were sent: that of the last is the one counted";
+        let of_reports = (self.reports_differ && self.disputed_by.is_none()).then(|| Note::remark(several));
+        let confused = self.data.iter().filter_map(|(topic, data)| data.confusion(topic).map(Note::remark));
         self.geometry.iter().cloned().chain(of_reports).chain(confused).collect()
     }
 
@@ -227,7 +227,7 @@ pub(super) fn enter(
             let nth = data
                 .map_or(0, |data| about.data.entry(data).or_default().answered(identity.clone(), by.clone()));
             let origin = Origin { source: Some(message.source.clone()), by, measurement: None };
-            let of = |result| Inference { origin: origin.clone(), result };
+            let of = |estimate| Inference { origin: origin.clone(), estimate };
             let estimates = results.into_iter().map(of).collect();
             about.answers.push(Answer { source: message.source, identity, nth, estimates });
             Ok(step)

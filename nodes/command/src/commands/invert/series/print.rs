@@ -3,9 +3,8 @@
 use super::super::speed_table::in_radians;
 use super::sample::Sample;
 use grainlab_console::{CsvText, Table, fixed, wrapped};
-use grainlab_emt::{
-    Doubted, Interval, PressureEstimate, SeriesEstimate, SeriesPrior, SeriesRow, SpeedMode, Status,
-};
+use grainlab_core::notes::Status;
+use grainlab_emt::{Doubted, Interval, PressureEstimate, SeriesEstimate, SeriesPrior, SeriesRow, SpeedMode};
 use std::f64::consts::PI;
 
 /// Share of a posterior at an end of a range from which it is said.
@@ -302,7 +301,7 @@ fn without(sample: &Sample, doubted: &Doubted) -> String {
 fn outside(sample: &Sample) -> Option<String> {
     let all: Vec<_> = sample.estimate.pressures.iter().filter(|p| p.outside.is_some()).collect();
     let pressures: Vec<String> = all.iter().map(|p| kilopascals(p.pressure)).collect();
-    let first = all.first()?.outside?;
+    let first = all.first()?.outside.as_ref()?;
     Some(format!("extrapolated at {} kPa: {first}", pressures.join(", ")))
 }
 
