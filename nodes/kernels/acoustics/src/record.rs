@@ -15,7 +15,7 @@
 //! - `ambient`: the noise, its spectrum, and noise of the same kind for computed records
 //! - `distinct`: the waves in a receiver; `chosen`: the one of the mode
 //! - `separated`: the arrival without crosstalk; `forward`: computed records; `copies`: picks less their bias in computed copies;
-//!   `travel_time`: picks with their errors
+//!   `pick`: a pick and its speed; `travel_time`: picks with their errors
 
 #[cfg(test)]
 #[path = "../tests/claims/computed_records.rs"]
@@ -32,8 +32,10 @@ mod distinct;
 mod filter;
 mod forward;
 mod passage;
+mod pick;
 mod separated;
 mod travel_time;
 
 pub use passage::{Passage, Record};
-pub use travel_time::{Pick, Picks, picks};
+pub use pick::Pick;
+pub use travel_time::{Picks, picks};

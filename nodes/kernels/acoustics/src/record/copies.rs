@@ -5,8 +5,8 @@ use super::band::Band;
 use super::cleaned::{cleaned, thinned};
 use super::forward::Path;
 use super::passage::{Passage, Record};
+use super::pick::Pick;
 use super::separated::{Separated, fitted, largest};
-use super::travel_time::Pick;
 use crate::error::AcousticsError;
 use crate::noise::Noise;
 use crate::time_of_flight::ArrivalPick;
@@ -57,7 +57,7 @@ pub(super) struct Compared {
     pub(super) missing: Vec<(WaveMethod, String)>,
     /// Correlation of the arrival with the expected one, and the mean correlation of the copies.
     pub(super) correlations: [f64; 2],
-    /// From 0 to 1: see [`super::Picks::sign_doubt`].
+    /// From 0 to 1: see `Picks::sign_doubt`.
     pub(super) sign_doubt: f64,
     /// Signal before the onset beyond any copy's, over the signal after it.
     pub(super) early: f64,

@@ -1,7 +1,8 @@
 //! Fits of the constants of `travel_time` by computed records of known speed. No test of stated errors has these records.
 
 use super::computed_records::{Computed, Conditions, computed, usual};
-use super::travel_time::{COMMON_VARIANCE_SHARE, Pick, SIGMAS_OF_INTERVAL, TAUGHT, picks};
+use super::pick::{COMMON_VARIANCE_SHARE, Pick};
+use super::travel_time::{SIGMAS_OF_INTERVAL, TAUGHT, picks};
 use grainlab_testkit::nightly;
 use rand_distr::{Distribution, Uniform};
 use rand_pcg::Pcg64Mcg;

@@ -3,6 +3,7 @@
 use super::cleaned::LEAST_PER_PERIOD;
 use super::copies::{Arrival, Compared, HALF_PERIOD};
 use super::passage::{Passage, Record};
+use super::pick::Pick;
 use super::separated::largest;
 use crate::error::AcousticsError;
 use grainlab_core::WaveMethod;
@@ -44,41 +45,11 @@ pub(super) const TAUGHT: [f64; 4] =
 /// Standard deviations from the middle to an end of a 95 % interval.
 pub(super) const SIGMAS_OF_INTERVAL: f64 = 1.96;
 
-/// Share of the variance of a time that records of one path and mode have in common.
-///
-/// The share is 0.3 if the transducers do not ring, and 1 if they ring.
-/// `records_of_one_path_have_less_in_common_than_is_stated_and_more_if_the_transducers_ring` tests that this constant is between.
-pub(super) const COMMON_VARIANCE_SHARE: f64 = 0.5;
-
 /// Least length of a path, wavelengths, and speeds of waves in packings of grains, m/s.
 ///
 /// Other results are refused, because they are no waves, or have a wrong unit.
 const LEAST_WAVELENGTHS: f64 = 0.5;
 const SPEEDS: std::ops::Range<f64> = 1.0..1e4;
-
-/// The travel time of long waves by one pick.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pick {
-    /// The feature that was picked.
-    pub method: WaveMethod,
-    /// Travel time, without that of the system and without the bias, s.
-    pub time: f64,
-    /// Standard deviation of the time, s.
-    pub time_stddev: f64,
-    /// Bias that was taken off: the feature arrives this much later than long waves, s.
-    pub bias: f64,
-    /// Speed of long waves, m/s.
-    pub speed: f64,
-    /// Standard deviation of the speed, m/s, with those of the distance and of the delay.
-    pub speed_stddev: f64,
-    /// Part of it that the records of one path and mode share, m/s: distance, delay, and half of the variance of the time but for what
-    /// contradictory picks add.
-    pub speed_common_stddev: f64,
-    /// Part of the error of the time by which contradictory picks differ, s.
-    apart: f64,
-    /// What the constants of [`TAUGHT`] multiply, s.
-    pub(super) causes: [f64; 4],
-}
 
 /// The picks of a record, and what was found of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -131,7 +102,7 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
         compared = arrival.compared(compared.picks[best].time * arrival.sample_rate, seed);
     }
     let mut picks: Vec<Pick> =
-        compared.picks.iter().map(|pick| pick.with_errors_beyond_copies(&arrival, &compared)).collect();
+        compared.picks.iter().map(|pick| with_errors_beyond_copies(pick, &arrival, &compared)).collect();
     // An onset is found in any signal: the wave is that of another pick.
     if picks.iter().all(|p| p.method == WaveMethod::FirstArrival) {
         picks.clear();
@@ -214,60 +185,29 @@ fn least(picks: &[Pick]) -> Option<usize> {
     (0..picks.len()).min_by(|a, b| picks[*a].time_stddev.total_cmp(&picks[*b].time_stddev))
 }
 
-impl Pick {
-    /// Creates the pick of a feature after the time `read`, s, less its bias, s, without a speed.
-    pub(super) fn new(method: WaveMethod, read: f64, [bias, time_stddev]: [f64; 2]) -> Self {
-        let [speed, speed_stddev, speed_common_stddev, apart] = [0.0; 4];
-        let (time, causes) = (read - bias, [0.0; 4]);
-        Self { method, time, time_stddev, bias, speed, speed_stddev, speed_common_stddev, apart, causes }
-    }
-
-    /// Returns the pick with the errors that computed copies do not show.
-    fn with_errors_beyond_copies(&self, arrival: &Arrival<'_>, compared: &Compared) -> Self {
-        let (found, band, passage) = (&arrival.found, &arrival.band, arrival.passage);
-        let period = 1.0 / (band.frequency * arrival.sample_rate);
-        // An onset has neither the shape nor the sign of a wave.
-        let is_onset = self.method == WaveMethod::FirstArrival;
-        let [of_onset, of_wave] = if is_onset { [period, 0.0] } else { [0.0, period] };
-        // Over the mean, which noise makes smaller, so that noise does not make the difference smaller.
-        let unlike = (1.0 - compared.correlations[0] / compared.correlations[1]).max(0.0);
-        // Where there is another candidate, it is the earlier signal, and the error covers both.
-        let may_be_later = passage.longitudinal != Some(true) && found.other.is_none();
-        let causes = [
-            unlike * of_wave,
-            of_onset,
-            if may_be_later { compared.early * period } else { 0.0 },
-            (self.time - arrival.longest_time()).max(0.0),
-        ];
-        let taught = std::array::from_fn::<f64, 4, _>(|k| TAUGHT[k] * causes[k]);
-        // Interpolation is of second order in the interval between samples. At the fewest samples in a period a feature is anywhere
-        // between two samples of the source, and of the receiver.
-        let sampled = (2.0 / 12f64).sqrt() * LEAST_PER_PERIOD * band.frequency.powi(2) * period;
-        let after = compared.begins.map_or(0.0, |begins| (self.time - begins).max(0.0));
-        let others = [self.time_stddev, HALF_PERIOD * compared.sign_doubt * of_wave, after, sampled];
-        let variance: f64 = taught.iter().chain(&others).map(|e| e * e).sum();
-        Self { causes, ..*self }.with_error(variance.sqrt(), passage)
-    }
-
-    /// Returns the pick with this standard deviation of the time, and with its speed.
-    fn with_error(self, time_stddev: f64, passage: &Passage) -> Self {
-        let speed = passage.distance / self.time;
-        let error_of_speed = |time_stddev: f64| {
-            let relative = time_stddev.hypot(passage.delay_stddev) / self.time;
-            speed * relative.hypot(passage.distance_stddev / passage.distance)
-        };
-        let common = COMMON_VARIANCE_SHARE * (time_stddev.powi(2) - self.apart.powi(2));
-        Self {
-            time_stddev,
-            speed,
-            speed_stddev: error_of_speed(time_stddev),
-            speed_common_stddev: error_of_speed(common.max(0.0).sqrt()),
-            ..self
-        }
-    }
-
-    /// Part of the standard deviation of the speed that is of this record alone, m/s.
-    pub fn speed_own_stddev(&self) -> f64 {
-        (self.speed_stddev.powi(2) - self.speed_common_stddev.powi(2)).max(0.0).sqrt()
-    }
+/// Returns the pick with the errors that computed copies do not show.
+fn with_errors_beyond_copies(pick: &Pick, arrival: &Arrival<'_>, compared: &Compared) -> Pick {
+    let (found, band, passage) = (&arrival.found, &arrival.band, arrival.passage);
+    let period = 1.0 / (band.frequency * arrival.sample_rate);
+    // An onset has neither the shape nor the sign of a wave.
+    let is_onset = pick.method == WaveMethod::FirstArrival;
+    let [of_onset, of_wave] = if is_onset { [period, 0.0] } else { [0.0, period] };
+    // Over the mean, which noise makes smaller, so that noise does not make the difference smaller.
+    let unlike = (1.0 - compared.correlations[0] / compared.correlations[1]).max(0.0);
+    // Where there is another candidate, it is the earlier signal, and the error covers both.
+    let may_be_later = passage.longitudinal != Some(true) && found.other.is_none();
+    let causes = [
+        unlike * of_wave,
+        of_onset,
+        if may_be_later { compared.early * period } else { 0.0 },
+        (pick.time - arrival.longest_time()).max(0.0),
+    ];
+    let taught = std::array::from_fn::<f64, 4, _>(|k| TAUGHT[k] * causes[k]);
+    // Interpolation is of second order in the interval between samples. At the fewest samples in a period a feature is anywhere
+    // between two samples of the source, and of the receiver.
+    let sampled = (2.0 / 12f64).sqrt() * LEAST_PER_PERIOD * band.frequency.powi(2) * period;
+    let after = compared.begins.map_or(0.0, |begins| (pick.time - begins).max(0.0));
+    let others = [pick.time_stddev, HALF_PERIOD * compared.sign_doubt * of_wave, after, sampled];
+    let variance: f64 = taught.iter().chain(&others).map(|e| e * e).sum();
+    Pick { causes, ..*pick }.with_error(variance.sqrt(), passage)
 }
