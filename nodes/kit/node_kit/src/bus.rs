@@ -4,6 +4,7 @@ use crate::BULK_LIMIT;
 use crate::bus_error::BusError;
 use crate::demand::Demand;
 use crate::graph::Graph;
+use crate::handles::{PublisherId, SubscriptionId};
 use crate::sample::{Sample, SampleId};
 use crate::statistics::Statistics;
 use grainlab_msgs::Topic;
@@ -11,14 +12,6 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
-
-/// Handle of an advertised topic on one bus.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct PublisherId(pub(crate) usize);
-
-/// Handle of a subscription on one bus.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct SubscriptionId(pub(crate) usize);
 
 /// The reason why [`Bus::wait`] returned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! The endpoints and processes that a bus knows.
 
 use crate::admission::{Participant, Stranger};
-use crate::bus::{PublisherId, SubscriptionId};
+use crate::handles::{PublisherId, SubscriptionId};
 use crate::identity::Identity;
 use crate::offer::Offer;
 use grainlab_msgs::{Guid, Topic};

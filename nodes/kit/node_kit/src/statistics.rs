@@ -1,8 +1,8 @@
 //! The counts of a bus.
 
 use crate::announced::Announced;
-use crate::bus::{PublisherId, SubscriptionId};
 use crate::bus_error::BusError;
+use crate::handles::{PublisherId, SubscriptionId};
 use grainlab_msgs::{Published, Received, Topic};
 
 /// Numbers of messages that were sent, taken and refused.

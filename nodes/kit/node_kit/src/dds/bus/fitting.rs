@@ -2,9 +2,9 @@
 
 use super::{DdsBus, wire_name};
 use crate::announced::Announced;
-use crate::bus::SubscriptionId;
 use crate::bus_error::BusError;
 use crate::dds::graph::Endpoints;
+use crate::handles::SubscriptionId;
 use crate::lock::lock;
 use crate::sample::Sample;
 use grainlab_msgs::{Guid, Topic, TypeInfo};
