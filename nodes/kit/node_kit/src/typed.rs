@@ -1,8 +1,9 @@
 //! Typed handles over the raw bus.
 
-use crate::bus::{Bus, PublisherId, SubscriptionId};
+use crate::bus::Bus;
 use crate::bus_error::BusError;
 use crate::demand::Demand;
+use crate::handles::{PublisherId, SubscriptionId};
 use crate::sample::{SampleId, SampleInfo};
 use grainlab_msgs::{Message, Topic, from_cdr, to_cdr};
 use std::marker::PhantomData;

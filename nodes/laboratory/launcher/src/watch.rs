@@ -10,8 +10,8 @@ use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Microstructure, Moduli, PackingReport, RunState, WaveSpeeds};
 use grainlab_msgs::{PhaseReport, Topic, stamp, topics};
 use grainlab_node_kit::{
-    Bus, BusError, DdsBus, Demand, Identity, Names, Participant, Report, Subscription, bus_named, member_of,
-    watchdog,
+    Bus, BusError, DdsBus, Demand, Graph, Identity, Names, Participant, Report, Subscription, bus_named,
+    member_of, watchdog,
 };
 use grainlab_recorder::strangers::name;
 use std::collections::{BTreeMap, BTreeSet};

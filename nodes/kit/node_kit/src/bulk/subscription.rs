@@ -3,9 +3,10 @@
 use super::limits::IDLE_CREDIT_PERIOD;
 use super::part_topics::beside;
 use super::receiver::Receiver;
-use crate::bus::{Bus, SubscriptionId};
+use crate::bus::Bus;
 use crate::bus_error::{BusError, tolerate_full};
 use crate::demand::Demand;
+use crate::handles::SubscriptionId;
 use crate::sample::{Sample, SampleInfo};
 use crate::typed::{Publisher, Subscription};
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};

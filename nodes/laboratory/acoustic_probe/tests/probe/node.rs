@@ -6,7 +6,9 @@ use grainlab_core::results::NoStiffness;
 use grainlab_msgs::boundary::WaveSpeedsReading;
 use grainlab_msgs::msg::{Packing, WaveSpeeds, Waveform};
 use grainlab_msgs::{to_cdr, topics};
-use grainlab_node_kit::{Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Subscription};
+use grainlab_node_kit::{
+    Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Statistics, Subscription,
+};
 use grainlab_testkit::packings::{DIAMETER, OVERLAP, lattice};
 
 /// A publisher of packings that receives the results.

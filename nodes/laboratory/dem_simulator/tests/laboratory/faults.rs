@@ -5,7 +5,9 @@ use grainlab_core::{ComponentControl, Packing};
 use grainlab_dem_simulator::Settings;
 use grainlab_msgs::msg::{self, PackingReport, RunState, StrainRate, Stress};
 use grainlab_msgs::{to_cdr, topics};
-use grainlab_node_kit::{Actor, Bus, Demand, Exit, Next, Node, NodeError, Publisher, Subscription};
+use grainlab_node_kit::{
+    Actor, Bus, Demand, Exit, Next, Node, NodeError, Publisher, Statistics, Subscription,
+};
 use std::time::Duration;
 
 /// A servo that answers `honest` requests correctly and then invalidly.
