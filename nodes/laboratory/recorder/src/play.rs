@@ -15,6 +15,7 @@ use publisher::{TopicPublishers, offer, pause, wait_for_readers};
 use session::{Ended, Session};
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::sync::Arc;
 use std::time::Duration;
 
 const EXAMPLES: &str = "\
@@ -213,7 +214,7 @@ struct Offered {
 fn offer_all(
     args: &Args,
     bus: &mut DdsBus,
-    channels: Vec<ChannelInfo>,
+    channels: Vec<Arc<ChannelInfo>>,
     overrides: &QosOverrides,
 ) -> Result<Offered, Failure> {
     let (mut publishers, mut left_out, mut is_refused) = (TopicPublishers::new(), Vec::new(), false);
@@ -231,11 +232,11 @@ fn offer_all(
         match offered {
             Ok(publisher) => {
                 note.iter().for_each(|note| say!("grainlab: {name}: {note}"));
-                publishers.insert(channel.topic, publisher);
+                publishers.insert(channel.topic.clone(), publisher);
             }
             Err(reason) => {
                 say!("grainlab: {name} is left out: {reason}");
-                left_out.push(channel.topic);
+                left_out.push(channel.topic.clone());
             }
         }
     }

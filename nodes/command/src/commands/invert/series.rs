@@ -79,7 +79,11 @@ pub(super) fn run(
     }
     let contradictory: Vec<&Sample> = found.iter().filter(|s| s.is_contradictory()).collect();
     for sample in &contradictory {
-        say!("grainlab: {name}: sample {:?}: contradictory: {}", sample.sample, doubts::contradiction(sample));
+        say!(
+            "grainlab: {name}: sample {:?}: contradictory: {}",
+            sample.sample,
+            doubts::contradiction(sample)
+        );
     }
     failed.iter().for_each(|fault| say!("grainlab: {fault}"));
     Ok(if contradictory.is_empty() && failed.is_empty() { Exit::Done } else { Exit::PhysicsInvalid })

@@ -105,7 +105,8 @@ impl Sentences {
         let of_eps = |p: &PressureEstimate| p.eps.is_some_and(|eps| eps.is_undetermined());
         let mut open: Vec<String> = Vec::new();
         for (name, is_open) in [("z", of_z), ("eps", of_eps)] {
-            let all: Vec<_> = e.pressures.iter().filter(|p| is_open(p)).map(|p| kilopascals(p.pressure)).collect();
+            let all: Vec<_> =
+                e.pressures.iter().filter(|p| is_open(p)).map(|p| kilopascals(p.pressure)).collect();
             open.extend(match &all[..] {
                 [] => None,
                 [first, .., last] if first != last => Some(format!("{name} from {first} to {last} kPa")),
@@ -123,7 +124,9 @@ impl Sentences {
             }
         }
         for law in &e.laws {
-            let Some(crossover) = law.ln_crossover.filter(|_| law.probability > super::print::LIKELY) else { continue };
+            let Some(crossover) = law.ln_crossover.filter(|_| law.probability > super::print::LIKELY) else {
+                continue;
+            };
             if crossover.is_undetermined() || is_far(sample, crossover.mean.exp()) {
                 open.push(format!("the crossover of {}", law.law));
             }
