@@ -1,12 +1,12 @@
 //! The part of a run's state that is not in the packing: loading path, accumulated strain, present rate. It is stored as
 //! JSON with names and a version, so that a recording is also a checkpoint.
 
-use crate::engine::EngineProgram;
 use crate::error::ExperimentError;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use grainlab_core::Packing;
 use grainlab_core::results::PackingReport;
+use grainlab_engine::EngineProgram;
 use grainlab_scene::Scene;
 use serde::{Deserialize, Serialize};
 
