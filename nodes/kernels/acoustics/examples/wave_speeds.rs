@@ -4,7 +4,8 @@
 
 use grainlab_acoustics::{Settings, Survey, measure};
 use grainlab_core::{Cell, Mat3, Material, Vec3};
-use grainlab_dem::{Engine, EngineSettings};
+use grainlab_dem::Engine;
+use grainlab_engine::EngineSettings;
 
 const RADIUS: f64 = 1e-4;
 const CELLS: usize = 3;

@@ -9,6 +9,7 @@ use crate::samples::Samples;
 use crate::send_queue::SendQueue;
 use crate::settings::Settings;
 use crate::speculative_step::{self, SpeculativeStep};
+use grainlab_engine::EngineError;
 use grainlab_experiment::{ExperimentError, Simulation};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::msg::{self, RunState, StrainRate, Stress};
@@ -95,9 +96,9 @@ impl DemSimulator {
         settings: Settings,
     ) -> Result<Self, NodeError> {
         let from = resume.as_ref().map(|(packing, state)| (packing, state.as_slice()));
-        let factory = settings.engine_for(from).map_err(NodeError::usage)?;
+        let factory = settings.engine_for(&scene, from)?;
         let mut run = Simulation::with_engine(scene, factory, from).map_err(|e| match e {
-            ExperimentError::OtherEngine { .. } => NodeError::usage(e),
+            ExperimentError::Engine(EngineError::Failed { .. }) => NodeError::usage(e),
             e => NodeError::failed(e),
         })?;
         run.number_requests_from(settings.next_request);

@@ -1,7 +1,8 @@
 //! A packing and its run state are a checkpoint: a run resumed from them continues bit for bit.
 
 use crate::{begin, path};
-use grainlab_dem::{Compute, DemError};
+use grainlab_dem::gas::GasError;
+use grainlab_engine::Compute;
 use grainlab_experiment::{ExperimentError, Simulation};
 use grainlab_scene::{Condition, Measure, Scene};
 use std::sync::atomic::AtomicBool;
@@ -174,7 +175,7 @@ fn an_event_driven_gas_accepts_isotropic_rates_only_and_reports_jamming() {
             break error;
         }
     };
-    assert!(matches!(error, ExperimentError::Engine(DemError::Jammed { .. })), "{error}");
+    assert!(matches!(error, ExperimentError::Gas(GasError::Jammed { .. })), "{error}");
     assert!(run.packing().unwrap().validated().is_ok());
 }
 

@@ -154,7 +154,7 @@ impl DemSimulator {
                     Ok(Next::Again)
                 }
                 // There is no state to save. A restarted simulator goes on from the last packing.
-                Err(error @ ExperimentError::EngineLost { .. }) => Err(NodeError::failed(error)),
+                Err(error) if error.is_lost() => Err(NodeError::failed(error)),
                 Err(error) => self.fail(bus, &error.to_string()),
             };
         }
@@ -181,9 +181,10 @@ impl DemSimulator {
         if advanced.packing_due
             && let Err(error) = self.publish_packing()
         {
-            return match error {
-                ExperimentError::EngineLost { .. } => Err(NodeError::failed(error)),
-                error => self.fail(bus, &error.to_string()),
+            return if error.is_lost() {
+                Err(NodeError::failed(error))
+            } else {
+                self.fail(bus, &error.to_string())
             };
         }
         if let Some(phase) = &advanced.ended {
