@@ -50,7 +50,7 @@ fn sent() -> msg::WaveSpeeds {
         smooth: true,
         speeds: vec![compression, shear],
         warnings: vec!["send less".to_owned()],
-        notes: Vec::new(),
+        notes: vec![msg::Note { text: "send less".to_owned(), ..msg::Note::default() }],
     }
 }
 

@@ -1,7 +1,6 @@
 //! The position of a packing on the loading path of its run.
 
 use crate::notes::Note;
-use crate::results::PackingReport;
 use std::fmt;
 
 /// The position of a packing on the loading path of its run, and the engine that made the packing.
@@ -62,16 +61,5 @@ impl PathPosition {
     /// Returns a note on a packing that was recorded within a phase.
     pub fn note(&self) -> Option<Note> {
         (!self.end_of_phase).then(|| Note::within_phase(self.phase as f64))
-    }
-
-    /// Removes from the report of the packing what its strain does not tell: γ/Δ of the strain from a state that no phase has
-    /// set as the reference, and a strain that was not counted.
-    pub fn judge_strain(&self, report: &mut PackingReport) {
-        if self.strain_origin != StrainOrigin::Reference {
-            report.strain_ratios.total = None;
-        }
-        if self.strain_origin == StrainOrigin::Unknown {
-            report.strain = None;
-        }
     }
 }

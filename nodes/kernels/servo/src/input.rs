@@ -1,6 +1,6 @@
 //! Input and output of the servo, and the answers that an input allows.
 
-use crate::check::ServoError;
+use crate::error::ServoError;
 use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 
 /// Relative rounding error that a servo in another language may add.

@@ -1,49 +1,11 @@
-//! A note on a result, and the status that notes give it.
+//! A note on a result.
 
-use super::Code;
+use super::code::Code;
 use super::shown::Shown;
+use super::status::Status;
+use super::table::with_table;
 use std::borrow::Cow;
 use std::fmt;
-
-/// Reliability of an estimate, from the best to the worst. A note has the status that it gives an estimate.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Status {
-    /// Model and calibration were used inside their range, and the data agree with each other and with the model.
-    #[default]
-    Ok,
-    /// Model or calibration were used outside their range.
-    Extrapolated,
-    /// The data contradict each other, the model or the prior.
-    Contradictory,
-    /// There is no estimate, or one that determines nothing.
-    Unknown,
-}
-
-impl Status {
-    /// Every status, in the order of the codes of messages.
-    pub const ALL: [Self; 4] = [Self::Ok, Self::Extrapolated, Self::Contradictory, Self::Unknown];
-
-    /// Returns the name in texts, files and results.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Ok => "ok",
-            Self::Extrapolated => "extrapolated",
-            Self::Contradictory => "contradictory",
-            Self::Unknown => "unknown",
-        }
-    }
-
-    /// Returns the status of an estimate with these notes: the worst of theirs.
-    pub fn of(notes: &[Note]) -> Self {
-        notes.iter().map(|note| note.severity).max().unwrap_or_default()
-    }
-}
-
-impl fmt::Display for Status {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
 
 /// A limitation of a result, or the reason for its status: a code, names and numbers for programs, a sentence for readers.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +27,7 @@ enum Kind {
 }
 
 impl Note {
-    pub(super) fn listed(code: Code, subjects: Vec<Cow<'static, str>>, values: Vec<f64>) -> Self {
+    fn listed(code: Code, subjects: Vec<Cow<'static, str>>, values: Vec<f64>) -> Self {
         Self { kind: Kind::Listed(code), severity: code.severity(), subjects, values }
     }
 
@@ -156,11 +118,90 @@ pub fn texts<'a>(notes: impl IntoIterator<Item = &'a Note>) -> Vec<String> {
 }
 
 /// The sentence, without a full stop.
+macro_rules! constructors {
+    ($($(#[$doc:meta])* $variant:ident $code:ident $status:ident [$($subject:ident)*] ($($number:ident)*) $text:expr;)+) => {
+        impl Note {
+            $(
+                $(#[$doc])*
+                #[allow(clippy::too_many_arguments, reason = "one for each number of the sentence")]
+                pub fn $code($($subject: impl Into<Cow<'static, str>>,)* $($number: f64,)*) -> Self {
+                    Self::listed(Code::$variant, vec![$($subject.into(),)*], vec![$($number,)*])
+                }
+            )+
+        }
+    };
+}
+
+with_table!(constructors);
+
+impl Status {
+    /// Returns the status of an estimate with these notes: the worst of theirs.
+    pub fn of(notes: &[Note]) -> Self {
+        notes.iter().map(|note| note.severity).max().unwrap_or_default()
+    }
+}
+
 impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.kind {
             Kind::Listed(_) => f.write_str(&Self::text_of([self])),
             Kind::Foreign { text, .. } => f.write_str(text),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_code_is_unique_and_has_a_sentence_that_a_message_brings_back() {
+        for code in Code::ALL {
+            assert_eq!(Code::named(code.name()), Some(*code));
+            let subjects = vec!["one".to_owned(); code.subjects().len()];
+            let values = vec![0.25; code.numbers().len()];
+            let note = Note::from_parts(code.name(), code.severity(), &subjects, &values, "");
+            assert!(
+                note.is(*code) && !note.to_string().is_empty() && !note.to_string().ends_with('.'),
+                "{note}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_note_of_another_version_keeps_its_sentence_and_its_status() {
+        let note = Note::from_parts("new_here", Status::Extrapolated, &[], &[1.0], "the moon is full");
+        assert_eq!((note.code(), note.to_string().as_str()), ("new_here", "the moon is full"));
+        let longer = Note::from_parts("ratio_unusual", Status::Extrapolated, &[], &[1.0, 2.0], "as sent");
+        assert!(!longer.is(Code::RatioUnusual) && longer.to_string() == "as sent");
+        assert_eq!(Status::of(&[note, Note::grains_unknown()]), Status::Extrapolated);
+        assert_eq!(Status::of(&[]), Status::Ok);
+    }
+
+    #[test]
+    fn notes_that_differ_by_numbers_have_one_sentence_with_their_range() {
+        let notes = [0.61, 0.55, 0.64].map(Note::ratio_unusual);
+        assert!(notes.iter().all(|note| note.is_like(&notes[0])));
+        assert_eq!(
+            Note::text_of(&notes),
+            "G13/G12 = 0.5500 to 0.6400 is outside [2/3, 3/2], the range of contact anisotropy alone"
+        );
+        assert!(!Note::prior_unused("z").is_like(&Note::prior_unused("eps")));
+    }
+
+    #[test]
+    fn a_number_and_the_end_that_it_is_beyond_never_look_equal() {
+        let text = Note::too_far("p/E*", "grainlab", 1.1e-12, 2.3e-8, 1.63e-4).to_string();
+        assert!(text.contains("p/E* = 1.10e-12 is") && text.contains("[2.30e-8, 1.63e-4]"), "{text}");
+        let near = Note::state_outside_calibration("p/E*", 1.6301e-4, 2e-8, 1.63e-4).to_string();
+        assert!(near.contains("1.6301e-4 is outside"), "{near}");
+        let inside = |value| Note::state_outside_calibration("q/p", value, 0.61834, 0.64663).to_string();
+        assert!(inside(0.65).starts_with("q/p = 0.6500 is outside 0.6183 to 0.6466,"));
+        assert!(inside(0.646634).starts_with("q/p = 0.646634 is outside 0.618340 to 0.646630,"));
+        assert!(inside(0.618339).starts_with("q/p = 0.618339 is outside 0.618340 to 0.646630,"));
+        let above = Note::above_calibration("z", 4.000_01, 4.0).to_string();
+        assert!(above.starts_with("z = 4.00001 is above 4.00000,"), "{above}");
+        let ratio = Note::too_far("q/p", "x", 0.5, 0.0, 0.49999).to_string();
+        assert_eq!(ratio.matches("0.50000").count(), 1, "{ratio}");
     }
 }

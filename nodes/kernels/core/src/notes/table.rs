@@ -1,66 +1,9 @@
 //! The table of notes.
 
-use super::note::{Note, Status};
-use super::shown::Shown;
-use std::borrow::Cow;
-
-/// Defines [`Code`] and the constructors of [`Note`]. One row: variant, constructor (also the code in messages and JSON), status
-/// that the note gives an estimate, names in the sentence, numbers in the sentence (SI units), sentence without a full stop.
-macro_rules! notes {
-    ($($(#[$doc:meta])* $variant:ident $code:ident $status:ident [$($subject:ident)*] ($($number:ident)*) $text:expr;)+) => {
-        /// The notes of this program.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum Code {
-            $($(#[$doc])* $variant,)+
-        }
-
-        impl Code {
-            /// Every note of this program.
-            pub const ALL: &[Self] = &[$(Self::$variant,)+];
-
-            /// Returns the code in messages and JSON.
-            pub const fn name(self) -> &'static str {
-                match self { $(Self::$variant => stringify!($code),)+ }
-            }
-
-            /// Returns the status that the note gives an estimate.
-            pub const fn severity(self) -> Status {
-                match self { $(Self::$variant => Status::$status,)+ }
-            }
-
-            /// Returns the names of the numbers, in the order of [`Note::values`].
-            pub const fn numbers(self) -> &'static [&'static str] {
-                match self { $(Self::$variant => &[$(stringify!($number),)*],)+ }
-            }
-
-            const fn subjects(self) -> &'static [&'static str] {
-                match self { $(Self::$variant => &[$(stringify!($subject),)*],)+ }
-            }
-
-            pub(super) fn text(self, subjects: &[Cow<'static, str>], numbers: &[Shown]) -> String {
-                match self {
-                    $(Self::$variant => {
-                        let ([$($subject,)*], [$($number,)*]) = (subjects, numbers) else { return String::new() };
-                        $(let $number = *$number;)*
-                        String::from($text)
-                    })+
-                }
-            }
-        }
-
-        impl Note {
-            $(
-                $(#[$doc])*
-                #[allow(clippy::too_many_arguments, reason = "one for each number of the sentence")]
-                pub fn $code($($subject: impl Into<Cow<'static, str>>,)* $($number: f64,)*) -> Self {
-                    Self::listed(Code::$variant, vec![$($subject.into(),)*], vec![$($number,)*])
-                }
-            )+
-        }
-    };
-}
-
-notes! {
+/// Calls a macro with every row: variant and constructor (also the code in messages and JSON), status that the note gives an
+/// estimate, names in the sentence, numbers in the sentence (SI units), sentence without a full stop.
+macro_rules! with_table {
+    ($then:ident) => { $then! {
     // Estimates: data and state.
 
     /// The γ/Δ of the state is unknown and was taken as zero.
@@ -480,79 +423,7 @@ notes! {
     Ambiguous ambiguous Unknown [] (first second)
         format!("coordination numbers {first:.3} and {second:.3} explain the moduli almost equally well: give more, or more accurate, \
                  moduli");
+    } };
 }
 
-fn counted(contacts: Shown, one: &str, many: &str) -> String {
-    if contacts == Shown::from(1.0) {
-        format!("1 contact {one}")
-    } else {
-        format!("{contacts} contacts {many}")
-    }
-}
-
-impl Code {
-    /// Returns the note of this program with this code.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|code| code.name() == name)
-    }
-
-    pub(super) fn fits(self, subjects: usize, values: usize) -> bool {
-        (self.subjects().len(), self.numbers().len()) == (subjects, values)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_code_is_unique_and_has_a_sentence_that_a_message_brings_back() {
-        for code in Code::ALL {
-            assert_eq!(Code::named(code.name()), Some(*code));
-            let subjects = vec!["one".to_owned(); code.subjects().len()];
-            let values = vec![0.25; code.numbers().len()];
-            let note = Note::from_parts(code.name(), code.severity(), &subjects, &values, "");
-            assert!(
-                note.is(*code) && !note.to_string().is_empty() && !note.to_string().ends_with('.'),
-                "{note}"
-            );
-        }
-    }
-
-    #[test]
-    fn a_note_of_another_version_keeps_its_sentence_and_its_status() {
-        let note = Note::from_parts("new_here", Status::Extrapolated, &[], &[1.0], "the moon is full");
-        assert_eq!((note.code(), note.to_string().as_str()), ("new_here", "the moon is full"));
-        let longer = Note::from_parts("ratio_unusual", Status::Extrapolated, &[], &[1.0, 2.0], "as sent");
-        assert!(!longer.is(Code::RatioUnusual) && longer.to_string() == "as sent");
-        assert_eq!(Status::of(&[note, Note::grains_unknown()]), Status::Extrapolated);
-        assert_eq!(Status::of(&[]), Status::Ok);
-    }
-
-    #[test]
-    fn notes_that_differ_by_numbers_have_one_sentence_with_their_range() {
-        let notes = [0.61, 0.55, 0.64].map(Note::ratio_unusual);
-        assert!(notes.iter().all(|note| note.is_like(&notes[0])));
-        assert_eq!(
-            Note::text_of(&notes),
-            "G13/G12 = 0.5500 to 0.6400 is outside [2/3, 3/2], the range of contact anisotropy alone"
-        );
-        assert!(!Note::prior_unused("z").is_like(&Note::prior_unused("eps")));
-    }
-
-    #[test]
-    fn a_number_and_the_end_that_it_is_beyond_never_look_equal() {
-        let text = Note::too_far("p/E*", "grainlab", 1.1e-12, 2.3e-8, 1.63e-4).to_string();
-        assert!(text.contains("p/E* = 1.10e-12 is") && text.contains("[2.30e-8, 1.63e-4]"), "{text}");
-        let near = Note::state_outside_calibration("p/E*", 1.6301e-4, 2e-8, 1.63e-4).to_string();
-        assert!(near.contains("1.6301e-4 is outside"), "{near}");
-        let inside = |value| Note::state_outside_calibration("q/p", value, 0.61834, 0.64663).to_string();
-        assert!(inside(0.65).starts_with("q/p = 0.6500 is outside 0.6183 to 0.6466,"));
-        assert!(inside(0.646634).starts_with("q/p = 0.646634 is outside 0.618340 to 0.646630,"));
-        assert!(inside(0.618339).starts_with("q/p = 0.618339 is outside 0.618340 to 0.646630,"));
-        let above = Note::above_calibration("z", 4.000_01, 4.0).to_string();
-        assert!(above.starts_with("z = 4.00001 is above 4.00000,"), "{above}");
-        let ratio = Note::too_far("q/p", "x", 0.5, 0.0, 0.49999).to_string();
-        assert_eq!(ratio.matches("0.50000").count(), 1, "{ratio}");
-    }
-}
+pub(super) use with_table;
