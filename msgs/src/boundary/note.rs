@@ -25,7 +25,7 @@ pub(super) fn note_message(note: &Note) -> msg::Note {
         code: note.code().to_owned(),
         severity: status_code(note.severity()),
         subjects: note.subjects().iter().map(|name| name.clone().into_owned()).collect(),
-        values: note.values().to_vec(),
+        numbers: note.values().to_vec(),
         text: note.to_string(),
     }
 }
@@ -48,5 +48,5 @@ pub(super) fn notes(
 
 fn note(check: Check, field: &str, m: &msg::Note) -> Result<Note, BoundaryError> {
     let severity = status(check, &format!("{field}.severity"), m.severity)?;
-    Ok(Note::from_parts(&m.code, severity, &m.subjects, &m.values, &m.text))
+    Ok(Note::from_parts(&m.code, severity, &m.subjects, &m.numbers, &m.text))
 }

@@ -65,7 +65,7 @@ impl Serialize for NoteView<'_> {
         map.serialize_entry("code", note.code())?;
         map.serialize_entry("severity", note.severity().name())?;
         map.serialize_entry("subjects", note.subjects())?;
-        map.serialize_entry("values", &note.named_values().collect::<BTreeMap<_, _>>())?;
+        map.serialize_entry("numbers", &note.named_values().collect::<BTreeMap<_, _>>())?;
         map.serialize_entry("text", &note.to_string())?;
         map.end()
     }

@@ -255,10 +255,7 @@ fn a_stress_that_is_not_a_number_ends_the_run_with_its_state_saved_and_is_not_pu
     let saved: msg::Packing = record.last(&topics::PACKING).unwrap();
     assert_eq!((saved.step, end.last_packing_step), (end.step, end.step));
     let sent = record.messages::<Stress>(&topics::STRESS);
-    let steps: Vec<_> = sent.iter().map(|s| (s.step, s.stress.zz)).collect();
-    assert!(
-        sent.len() > 10 && sent.iter().all(|s| s.step < saved.step && s.stress.zz.is_finite()),
-        "{} {steps:?}",
-        saved.step
-    );
+    // One request each 100 steps.
+    assert_eq!(sent.len(), 10);
+    assert!(sent.iter().all(|s| s.step < saved.step && s.stress.zz.is_finite()));
 }
