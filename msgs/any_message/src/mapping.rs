@@ -89,7 +89,7 @@ impl Differences {
         let is_wanted = |own: &&str| wanted.fields.iter().any(|f| f.name == *own);
         let all: Vec<&str> = written.fields.iter().map(|f| f.name.as_str()).collect();
         // A field that is not known may be the list under another name.
-        let is_earlier = all.iter().all(|own| is_wanted(own));
+        let is_earlier = all.iter().all(&is_wanted);
         for field in &wanted.fields {
             match written.fields.iter().find(|f| f.name == field.name) {
                 None if is_earlier && matches!(field.kind.length, Length::Any(_)) => self.added = true,

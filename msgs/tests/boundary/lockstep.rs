@@ -139,7 +139,8 @@ fn a_rate_that_is_not_finite_is_refused_with_its_component() {
 #[test]
 fn invalid_messages_are_not_published() {
     let sound = ServoRequest::try_from(&stress()).unwrap();
-    let faults: [(fn(&mut ServoRequest), &str); 9] = [
+    type Fault = fn(&mut ServoRequest);
+    let faults: [(Fault, &str); 9] = [
         (|r| r.input.stress.zz = NAN, "stress.zz = NaN"),
         (|r| r.input.rate[1] = INF, "rate[1] (yy) = inf"),
         (|r| r.input.tangent = Some([NAN; 6]), "tangent.xx = NaN"),
