@@ -2,7 +2,7 @@
 //!
 //! - [`ParticleEngine`], [`EngineFactory`]: the contract; `grainlab_dem` is one engine, LAMMPS another
 //! - [`EngineSettings`]: the settings of a phase; [`Compute`]: threads, and the flag that stops a computation
-//! - [`Observables`], [`EnergyBalance`]: what an engine measures; [`EngineProgram`]: a program that is not ours
+//! - [`Observables`], [`EnergyBalance`]: what an engine measures; [`EngineProgram`](grainlab_core::EngineProgram): a program that is not ours
 //! - [`EngineError`]: why an engine cannot start or go on
 
 mod compute;

@@ -27,7 +27,7 @@ macro_rules! codes {
                 match self { $(Self::$variant => Status::$status,)+ }
             }
 
-            /// Returns the names of the numbers, in the order of [`Note::values`].
+            /// Returns the names of the numbers, in the order of [`Note::values`](super::Note::values).
             pub const fn numbers(self) -> &'static [&'static str] {
                 match self { $(Self::$variant => &[$(stringify!($number),)*],)+ }
             }

@@ -58,7 +58,7 @@ impl BulkPublisher {
         })
     }
 
-    /// The plain topic's handle, for [`Bus::readers`].
+    /// The plain topic's handle, for [`Graph::readers`](crate::Graph::readers).
     pub fn id(&self) -> PublisherId {
         self.plain
     }

@@ -138,7 +138,7 @@ impl BulkSubscription {
         self.queue.len()
     }
 
-    /// The plain topic's handle, for [`Bus::writers`] and [`Bus::count_refused`].
+    /// The plain topic's handle, for [`Graph::writers`](crate::Graph::writers) and [`Statistics::count_refused`](crate::Statistics::count_refused).
     pub fn id(&self) -> SubscriptionId {
         self.plain
     }
