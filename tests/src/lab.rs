@@ -4,7 +4,7 @@ use crate::bodies::recorded;
 use crate::process::{Ended, Process, children};
 use crate::wait::{LIMIT, until};
 use grainlab_msgs::Topic;
-use grainlab_node_kit::{Bus, DdsBus, Names, Network, is_in_use};
+use grainlab_node_kit::{Bus, DdsBus, Graph, Names, Network, is_in_use};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -15,7 +15,7 @@ use crate::value::{Array, Message, Value};
 pub enum Comparison {
     /// Names, types, order and constants are the same; comments and defaults may differ.
     Same,
-    /// Every wanted field is there under its name and with its type.
+    /// Every wanted field exists under its name and with its type, or is a list that was added later, which is read as empty.
     Mapped(Mapping),
     /// A wanted field is missing or has another type, or a constant has another meaning: what differs.
     Differs(Vec<String>),
@@ -30,7 +30,7 @@ pub struct Mapping {
 }
 
 impl Mapping {
-    /// Differences: an order, fields that are left out.
+    /// Differences that a reader should know: an order, fields that are left out. Lists that are read as empty are none.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
@@ -62,7 +62,7 @@ impl Schema {
         found.message(self.root(), wanted.root());
         match found {
             Differences { faults, .. } if !faults.is_empty() => Comparison::Differs(faults),
-            Differences { notes, .. } if notes.is_empty() => Comparison::Same,
+            Differences { notes, added: false, .. } if notes.is_empty() => Comparison::Same,
             Differences { notes, .. } => {
                 Comparison::Mapped(Mapping { from: self.clone(), to: wanted.clone(), notes })
             }
@@ -74,6 +74,8 @@ impl Schema {
 struct Differences {
     faults: Vec<String>,
     notes: Vec<String>,
+    /// True if a list was added since the messages were written.
+    added: bool,
     /// Types that were compared.
     done: BTreeSet<String>,
 }
@@ -84,8 +86,13 @@ impl Differences {
         if !self.done.insert(name.clone()) {
             return;
         }
+        let is_wanted = |own: &&str| wanted.fields.iter().any(|f| f.name == *own);
+        let all: Vec<&str> = written.fields.iter().map(|f| f.name.as_str()).collect();
+        // A field that is not known may be the list under another name.
+        let is_earlier = all.iter().all(&is_wanted);
         for field in &wanted.fields {
             match written.fields.iter().find(|f| f.name == field.name) {
+                None if is_earlier && matches!(field.kind.length, Length::Any(_)) => self.added = true,
                 None => self.faults.push(format!("{name} has no field {}", field.name)),
                 Some(own) => match (&own.kind.element, &field.kind.element) {
                     _ if !fits(&own.kind, &field.kind) => self
@@ -96,15 +103,12 @@ impl Differences {
                 },
             }
         }
-        let is_wanted = |own: &&str| wanted.fields.iter().any(|f| f.name == *own);
-        let all: Vec<&str> = written.fields.iter().map(|f| f.name.as_str()).collect();
         for more in all.iter().filter(|own| !is_wanted(own)) {
             self.notes.push(format!("{more} of {name} is not read"));
         }
         let common: Vec<&str> = all.into_iter().filter(is_wanted).collect();
-        if common.len() == wanted.fields.len()
-            && common.iter().zip(&wanted.fields).any(|(a, b)| **a != b.name)
-        {
+        let in_order = wanted.fields.iter().filter(|f| common.contains(&f.name.as_str()));
+        if common.iter().zip(in_order).any(|(a, b)| **a != b.name) {
             self.notes.push(format!("the fields of {name} are in another order"));
         }
         // A constant that is not known, or has another value, gives a field another meaning.
@@ -139,20 +143,19 @@ fn fits(own: &FieldType, wanted: &FieldType) -> bool {
         }
 }
 
-/// The message with the fields of `wanted`, each of which it has.
+/// Returns the message with the fields of `wanted`. Of those, it has all but lists, which are then empty.
 fn by_names(message: Message, wanted: &Arc<MessageType>) -> Message {
     let Message { kind, values } = message;
     let mut own: Vec<_> =
         kind.fields.iter().map(|f| f.name.as_str()).zip(values.into_iter().map(Some)).collect();
     let mut take = |name: &str| own.iter_mut().find(|(n, _)| *n == name).and_then(|(_, value)| value.take());
-    let values = wanted.fields.iter().filter_map(|field| {
-        Some(match (take(&field.name)?, &field.kind.element) {
-            (Value::Message(inner), Element::Message(kind)) => Value::Message(by_names(inner, kind)),
-            (Value::Array(Array::Message(all)), Element::Message(kind)) => {
-                Value::Array(Array::Message(all.into_iter().map(|m| by_names(m, kind)).collect()))
-            }
-            (value, _) => value,
-        })
+    let values = wanted.fields.iter().map(|field| match (take(&field.name), &field.kind.element) {
+        (Some(Value::Message(inner)), Element::Message(kind)) => Value::Message(by_names(inner, kind)),
+        (Some(Value::Array(Array::Message(all))), Element::Message(kind)) => {
+            Value::Array(Array::Message(all.into_iter().map(|m| by_names(m, kind)).collect()))
+        }
+        (Some(value), _) => value,
+        (None, element) => Value::Array(Array::empty(element)),
     });
     Message { values: values.collect(), kind: wanted.clone() }
 }
@@ -189,6 +192,29 @@ mod tests {
         }
         let other = schema(WANTED, "int32 a\nfloat64[3] b\n").compare(&wanted);
         assert_eq!(other, Comparison::Differs(vec!["b of p/Inner is float64[3], not float64[2]".into()]));
+    }
+
+    #[test]
+    fn a_list_that_was_added_later_is_read_as_empty_without_a_note() {
+        let wanted = schema(WANTED, INNER);
+        for (line, shown) in
+            [("Inner[] all\n", "all"), ("string[] texts\n", "texts"), ("float64[<=3] few\n", "few")]
+        {
+            let written = schema(&WANTED.replace("Inner[] all\n", ""), INNER);
+            let wanted = schema(&WANTED.replace("Inner[] all\n", line), INNER);
+            let Comparison::Mapped(mapping) = written.compare(&wanted) else { panic!("{line}") };
+            assert!(mapping.notes().is_empty(), "{:?}", mapping.notes());
+            let values = vec![Value::U8(0), Value::F64(1.0), Value::F64(0.2), Value::Text("a".into())];
+            let message = Message { kind: written.root().clone(), values };
+            let read = wanted.decode(&mapping.apply(&message.encode()).unwrap()).unwrap();
+            assert!(
+                crate::Shown::new(&read).json().contains(&format!(r#""{shown}":[],"name":"a""#)),
+                "{read:?}"
+            );
+        }
+        // A list with another name is not one that was added.
+        let renamed = schema(&WANTED.replace("[] all", "[] every"), INNER);
+        assert_eq!(renamed.compare(&wanted), Comparison::Differs(vec!["p/A has no field all".into()]));
     }
 
     #[test]

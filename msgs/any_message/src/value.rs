@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::cursor::{Cursor, put};
-use crate::types::{MessageType, Primitive, with_primitives};
+use crate::types::{Element, MessageType, Primitive, with_primitives};
 
 /// A decoded message: one value for each field of its type.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,6 +101,15 @@ macro_rules! values {
 with_primitives!(values);
 
 impl Array {
+    /// Returns an array of this element without values.
+    pub(crate) fn empty(element: &Element) -> Self {
+        match element {
+            Element::Primitive(kind) => Self::of(*kind, Vec::new()),
+            Element::String(_) | Element::WString(_) => Self::Text(Vec::new()),
+            Element::Message(_) => Self::Message(Vec::new()),
+        }
+    }
+
     /// True if it has no values.
     pub fn is_empty(&self) -> bool {
         self.len() == 0

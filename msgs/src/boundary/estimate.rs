@@ -2,96 +2,18 @@
 
 use super::check::Check;
 use super::error::BoundaryError;
-use crate::msg::Estimate;
-use grainlab_core::results::{INFERENCE_INPUTS, InferredQuantity};
-use serde::{Serialize, Serializer};
-use std::ops::Index;
-
-/// The result of one model: checked, if it is from a message. As JSON it has the stable keys of `results[]`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct ModelResult {
-    /// Name of the model.
-    pub model: String,
-    /// Name of the calibration.
-    pub calibration: String,
-    /// Inferred values; `None`: undetermined, or not part of the model.
-    #[serde(flatten)]
-    pub values: Quantities<Option<f64>>,
-    /// Standard deviations, from data and model.
-    pub sigma: Quantities<Option<f64>>,
-    /// Part of the standard deviations due to the model.
-    pub sigma_model: Quantities<Option<f64>>,
-    /// Credible intervals of the values.
-    pub interval: Interval,
-    /// Misfit: weighted sum of squares, by errors of data and model; `None` without degrees of freedom.
-    pub chi_square: Option<f64>,
-    /// Number of data minus number of unknowns; `None` without a solution.
-    pub degrees_of_freedom: Option<usize>,
-    /// Condition number, 1 or more: how much the effects of errors of the data differ between combinations.
-    pub condition_number: Option<f64>,
-    /// `ok`, `extrapolated`, `contradictory` or `unknown`.
-    pub status: &'static str,
-    /// The strain ratio γ/Δ that the model used; `None` if it uses none.
-    pub gamma_over_delta: Option<f64>,
-    /// Source of the strain ratio: `total`, `elastic`, `contact`: one of the three measured ones; `given`; `zero`: unknown, taken as 0.
-    pub gamma_over_delta_source: Option<&'static str>,
-    /// Notes for the user.
-    pub warnings: Vec<String>,
-}
-
-/// One value per quantity of the microstructure, in the order of [`InferredQuantity::ALL`]; as JSON by name.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Quantities<T>(pub [T; N]);
-
-/// Central intervals, low and high.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Interval {
-    /// Probability inside each.
-    pub level: Option<f64>,
-    /// Low and high of each quantity.
-    #[serde(flatten)]
-    pub bounds: Quantities<Option<[f64; 2]>>,
-}
-
-impl<T> Quantities<T> {
-    /// Each by this function.
-    pub fn of(value: impl FnMut(InferredQuantity) -> T) -> Self {
-        Self(InferredQuantity::ALL.map(value))
-    }
-}
-
-impl<T> Index<InferredQuantity> for Quantities<T> {
-    type Output = T;
-
-    fn index(&self, quantity: InferredQuantity) -> &T {
-        &self.0[quantity as usize]
-    }
-}
-
-impl<T: Serialize> Serialize for Quantities<T> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(InferredQuantity::ALL.map(InferredQuantity::name).into_iter().zip(&self.0))
-    }
-}
-
-impl ModelResult {
-    /// A model without an estimate, and the reason.
-    pub fn unknown(model: &str, calibration: &str, warnings: Vec<String>) -> Self {
-        Self {
-            model: model.to_owned(),
-            calibration: calibration.to_owned(),
-            status: "unknown",
-            warnings,
-            ..Self::default()
-        }
-    }
-}
+use super::note::{note_message, notes, status, status_code};
+use crate::msg;
+use grainlab_core::notes::{Status, texts};
+use grainlab_core::results::{
+    Estimate, GammaUsed, INFERENCE_INPUTS, InferredQuantity, Interval, MicrostructureCovariance, Quantities,
+};
 
 const CHECK: Check = Check("Estimate");
 
 const N: usize = InferredQuantity::COUNT;
 
-impl Estimate {
+impl msg::Estimate {
     /// The fields of the inferred quantities, each with one number or none, in the order of [`InferredQuantity::ALL`].
     pub fn quantities(&self) -> [&Vec<f64>; N] {
         [&self.k, &self.k_hat, &self.z, &self.eps, &self.eps_stiffness]
@@ -103,53 +25,81 @@ impl Estimate {
     }
 }
 
-impl TryFrom<&Estimate> for ModelResult {
+/// Returns the message of an estimate. It has numbers only where the status is not unknown.
+pub fn estimate_message(estimate: &Estimate) -> msg::Estimate {
+    let gamma = &estimate.gamma;
+    let mut message = msg::Estimate {
+        model: estimate.model.clone(),
+        calibration: estimate.calibration.clone(),
+        status: status_code(estimate.status),
+        gamma_over_delta: gamma.iter().map(|gamma| gamma.value).collect(),
+        gamma_over_delta_source: gamma.map_or("none", |gamma| gamma.source).to_owned(),
+        warnings: texts(&estimate.notes),
+        notes: estimate.notes.iter().map(note_message).collect(),
+        ..Default::default()
+    };
+    if estimate.status != Status::Unknown {
+        let level = estimate.interval.level;
+        let bounds = estimate.interval.bounds.0.into_iter().flat_map(Option::unwrap_or_default);
+        message.covariance = entries(estimate.covariance);
+        message.covariance_model = entries(estimate.covariance_model);
+        message.interval = level.map_or_else(Vec::new, |_| bounds.collect());
+        message.credible_level = level.unwrap_or(0.0);
+        message.chi_square = estimate.chi_square.unwrap_or(0.0);
+        message.degrees_of_freedom = estimate.degrees_of_freedom.unwrap_or(0) as u32;
+        message.condition_number = Vec::from_iter(estimate.condition_number);
+        let shares = estimate.information.0.into_iter().flat_map(Option::unwrap_or_default);
+        message.information.iter_mut().zip(shares).for_each(|(field, share)| *field = share);
+        for (field, value) in message.quantities_mut().into_iter().zip(estimate.values.0) {
+            field.extend(value);
+        }
+    }
+    debug_assert!(Estimate::try_from(&message).is_ok(), "{:?}", Estimate::try_from(&message));
+    message
+}
+
+fn entries(covariance: Option<MicrostructureCovariance>) -> Vec<f64> {
+    covariance.map_or_else(Vec::new, |c| c.transpose().iter().copied().collect())
+}
+
+impl TryFrom<&msg::Estimate> for Estimate {
     type Error = BoundaryError;
 
-    fn try_from(m: &Estimate) -> Result<Self, BoundaryError> {
-        let status = match m.status {
-            Estimate::STATUS_OK => "ok",
-            Estimate::STATUS_EXTRAPOLATED => "extrapolated",
-            Estimate::STATUS_CONTRADICTORY => "contradictory",
-            Estimate::STATUS_UNKNOWN => "unknown",
-            other => {
-                let allowed = "0 (ok), 1 (extrapolated), 2 (contradictory), 3 (unknown)";
-                return Err(CHECK.code("status", other, allowed));
-            }
-        };
-        let (gamma_over_delta, gamma_over_delta_source) = strain_ratio(m)?;
-        let unknown = Self {
-            status,
-            gamma_over_delta,
-            gamma_over_delta_source,
-            ..Self::unknown(&m.model, &m.calibration, m.warnings.clone())
-        };
-        if m.status == Estimate::STATUS_UNKNOWN {
+    fn try_from(m: &msg::Estimate) -> Result<Self, BoundaryError> {
+        let status = status(CHECK, "status", m.status)?;
+        let notes = notes(CHECK, &m.notes, &m.warnings, status)?;
+        if !m.notes.is_empty() && Status::of(&notes) != status {
+            return Err(CHECK.refused("status", status, "be the worst status of the notes"));
+        }
+        let unknown = Self { gamma: strain_ratio(m)?, ..Self::unknown(&m.model, &m.calibration, notes) };
+        if status == Status::Unknown {
             return Ok(unknown);
         }
         let values = values(m)?;
         let known = values.map(|v| v.is_some());
-        let sigma = standard_deviations("covariance", &m.covariance, &known)?;
-        let sigma_model = standard_deviations("covariance_model", &m.covariance_model, &known)?;
+        let [whole, part] = [("covariance", &m.covariance), ("covariance_model", &m.covariance_model)]
+            .map(|(field, entries)| covariance(field, entries, &known));
+        let (covariance, covariance_model) = (whole?, part?);
         part_is_at_most_the_whole(m)?;
         let interval = interval(m, &known)?;
         let chi_square = chi_square(m)?;
         let condition_number = condition_number(m)?;
-        information(m, &known)?;
         Ok(Self {
             values: Quantities(values),
-            sigma,
-            sigma_model,
+            covariance,
+            covariance_model,
             interval,
             chi_square,
             degrees_of_freedom: Some(m.degrees_of_freedom as usize),
             condition_number,
+            information: information(m, &known)?,
+            status,
             ..unknown
         })
     }
 }
 
-fn strain_ratio(m: &Estimate) -> Result<(Option<f64>, Option<&'static str>), BoundaryError> {
+fn strain_ratio(m: &msg::Estimate) -> Result<Option<GammaUsed>, BoundaryError> {
     const SOURCES: [&str; 6] = ["total", "elastic", "contact", "given", "zero", "none"];
     let listed = "total, elastic, contact, given, zero, none";
     let source = CHECK.word("gamma_over_delta_source", &m.gamma_over_delta_source, &SOURCES, listed)?;
@@ -157,10 +107,10 @@ fn strain_ratio(m: &Estimate) -> Result<(Option<f64>, Option<&'static str>), Bou
     let expected = usize::from(source != "none");
     let reason = "one strain ratio, or none where its source is none";
     CHECK.length("gamma_over_delta", m.gamma_over_delta.len(), expected, reason)?;
-    Ok((value, value.map(|_| source)))
+    Ok(value.map(|value| GammaUsed { value, source }))
 }
 
-fn values(m: &Estimate) -> Result<[Option<f64>; N], BoundaryError> {
+fn values(m: &msg::Estimate) -> Result<[Option<f64>; N], BoundaryError> {
     let mut values = [None; N];
     for (i, value) in m.quantities().into_iter().enumerate() {
         values[i] = CHECK.optional_finite(InferredQuantity::ALL[i].name(), value)?;
@@ -173,23 +123,20 @@ fn values(m: &Estimate) -> Result<[Option<f64>; N], BoundaryError> {
 /// The value of every entry that belongs to an unknown quantity.
 const NOTHING: &str = "0, because its quantity is not known";
 
-fn standard_deviations(
+fn covariance(
     field: &'static str,
     values: &[f64],
     known: &[bool; N],
-) -> Result<Quantities<Option<f64>>, BoundaryError> {
+) -> Result<Option<MicrostructureCovariance>, BoundaryError> {
     let checked: Option<[f64; N * N]> = CHECK.covariance(field, values)?;
     for (at, value) in values.iter().enumerate() {
         let both = known[at / N] && known[at % N];
         CHECK.that(both || *value == 0.0, format_args!("{field}[{at}]"), *value, NOTHING)?;
     }
-    Ok(Quantities::of(|q| {
-        let variance = checked.filter(|_| known[q as usize])?[(N + 1) * q as usize];
-        Some(variance.sqrt())
-    }))
+    Ok(checked.map(|entries| MicrostructureCovariance::from_row_slice(&entries)))
 }
 
-fn part_is_at_most_the_whole(m: &Estimate) -> Result<(), BoundaryError> {
+fn part_is_at_most_the_whole(m: &msg::Estimate) -> Result<(), BoundaryError> {
     for at in (0..m.covariance_model.len()).step_by(N + 1) {
         let whole = m.covariance.get(at).copied().unwrap_or_default();
         let part = m.covariance_model[at];
@@ -204,7 +151,7 @@ fn part_is_at_most_the_whole(m: &Estimate) -> Result<(), BoundaryError> {
     Ok(())
 }
 
-fn interval(m: &Estimate, known: &[bool; N]) -> Result<Interval, BoundaryError> {
+fn interval(m: &msg::Estimate, known: &[bool; N]) -> Result<Interval, BoundaryError> {
     let level = CHECK.share("credible_level", m.credible_level)?;
     if level == 0.0 {
         return Ok(Interval::default());
@@ -226,7 +173,7 @@ fn interval(m: &Estimate, known: &[bool; N]) -> Result<Interval, BoundaryError> 
     Ok(Interval { level: Some(level), bounds: Quantities(bounds) })
 }
 
-fn chi_square(m: &Estimate) -> Result<Option<f64>, BoundaryError> {
+fn chi_square(m: &msg::Estimate) -> Result<Option<f64>, BoundaryError> {
     let chi_square = CHECK.not_negative("chi_square", m.chi_square)?;
     if m.degrees_of_freedom == 0 {
         CHECK.that(chi_square == 0.0, "chi_square", chi_square, "0 where degrees_of_freedom is 0")?;
@@ -235,25 +182,28 @@ fn chi_square(m: &Estimate) -> Result<Option<f64>, BoundaryError> {
     Ok(Some(chi_square))
 }
 
-fn condition_number(m: &Estimate) -> Result<Option<f64>, BoundaryError> {
+fn condition_number(m: &msg::Estimate) -> Result<Option<f64>, BoundaryError> {
     CHECK.optional("condition_number", &m.condition_number, |field, number| {
         CHECK.that(number.is_finite() && *number >= 1.0, field, *number, "finite and 1 or more")
     })
 }
 
-fn information(m: &Estimate, known: &[bool; N]) -> Result<(), BoundaryError> {
+type Shares = [f64; INFERENCE_INPUTS.len()];
+
+fn information(m: &msg::Estimate, known: &[bool; N]) -> Result<Quantities<Option<Shares>>, BoundaryError> {
     CHECK.all_finite("information", &m.information)?;
-    for (i, shares) in m.information.chunks_exact(INFERENCE_INPUTS.len()).enumerate() {
-        let start = INFERENCE_INPUTS.len() * i;
+    let mut found = Quantities::default();
+    for (i, shares) in m.information.as_chunks().0.iter().enumerate() {
+        let shares: &Shares = shares;
+        let start = shares.len() * i;
         let Some(j) = shares.iter().position(|s| *s != 0.0) else { continue };
         CHECK.that(known[i], format_args!("information[{}]", start + j), shares[j], NOTHING)?;
         // Contributions of correlated data may be large and cancel, so that rounding affects the sum.
         let slack = 1e-6 * shares.iter().map(|s| s.abs()).sum::<f64>();
-        let (sum, name) = (
-            shares.iter().sum::<f64>(),
-            format!("sum of information[{start}..{}]", start + INFERENCE_INPUTS.len()),
-        );
+        let sum: f64 = shares.iter().sum();
+        let name = format!("sum of information[{start}..{}]", start + shares.len());
         CHECK.that((sum - 1.0).abs() <= slack, &name, sum, "1, or the row all 0 if unknown")?;
+        found.0[i] = Some(*shares);
     }
-    Ok(())
+    Ok(found)
 }

@@ -5,12 +5,14 @@
 
 mod check;
 mod contact_statistics;
+mod earlier_path;
 mod elastic_stiffness;
 mod error;
 mod estimate;
 mod fabric;
 mod microstructure;
 mod moduli;
+mod note;
 mod packing;
 mod packing_report;
 mod run_state;
@@ -23,7 +25,7 @@ mod waveform;
 
 pub use check::vector_message;
 pub use error::BoundaryError;
-pub use estimate::{Interval, ModelResult, Quantities};
+pub use estimate::estimate_message;
 pub use moduli::ModuliReading;
 pub use packing::{packing_header, packing_message};
 pub use packing_report::packing_report_message;

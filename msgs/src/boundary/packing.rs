@@ -1,10 +1,13 @@
 //! `Packing`: the complete mechanical state.
 
 use super::check::{Check, header, row_major};
+use super::earlier_path::earlier_path;
 use super::error::BoundaryError;
 use crate::std_msgs::Header;
 use crate::{msg, stamp};
-use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
+use grainlab_core::{
+    Cell, Contact, EngineProgram, Mat3, Material, Packing, PathPosition, StrainOrigin, Vec3,
+};
 
 const CHECK: Check = Check("Packing");
 
@@ -39,6 +42,7 @@ pub fn packing_message(packing: &Packing, scene: &str, run_state: Vec<u8>) -> ms
         friction: packing.friction,
         time_step: packing.time_step,
         run_state,
+        path: packing.path.iter().map(path_message).collect(),
         scene: scene.to_owned(),
     }
 }
@@ -80,9 +84,55 @@ impl TryFrom<&msg::Packing> for Packing {
             law,
             friction: m.friction,
             time_step: m.time_step,
+            path: path(m)?,
         };
         Ok(packing.validated()?.consistent()?)
     }
+}
+
+fn path_message(path: &PathPosition) -> msg::PathPosition {
+    let engine = path.engine.clone().unwrap_or_default();
+    msg::PathPosition {
+        phase: path.phase as u32,
+        end_of_phase: path.end_of_phase,
+        strain_origin: match path.strain_origin {
+            StrainOrigin::Reference => msg::PathPosition::REFERENCE,
+            StrainOrigin::FirstStep => msg::PathPosition::FIRST_STEP,
+            StrainOrigin::Unknown => msg::PathPosition::UNKNOWN,
+        },
+        engine: engine.name,
+        engine_version: engine.version,
+        engine_ranks: engine.ranks,
+    }
+}
+
+/// Returns the path of a message; that of a recording of an earlier version is in the run state.
+fn path(m: &msg::Packing) -> Result<Option<PathPosition>, BoundaryError> {
+    let path = CHECK.optional("path", &m.path, |_, path| position(path))?;
+    Ok(path.or_else(|| earlier_path(&m.run_state)))
+}
+
+fn position(path: &msg::PathPosition) -> Result<PathPosition, BoundaryError> {
+    let strain_origin = match path.strain_origin {
+        msg::PathPosition::REFERENCE => StrainOrigin::Reference,
+        msg::PathPosition::FIRST_STEP => StrainOrigin::FirstStep,
+        msg::PathPosition::UNKNOWN => StrainOrigin::Unknown,
+        other => {
+            let allowed = "0 (reference), 1 (first step), 2 (unknown)";
+            return Err(CHECK.code("path[0].strain_origin", other, allowed));
+        }
+    };
+    let program = || EngineProgram {
+        name: path.engine.clone(),
+        version: path.engine_version.clone(),
+        ranks: path.engine_ranks,
+    };
+    Ok(PathPosition {
+        phase: path.phase as usize,
+        end_of_phase: path.end_of_phase,
+        strain_origin,
+        engine: (!path.engine.is_empty()).then(program),
+    })
 }
 
 const THREE_PER_GRAIN: &str = "three per grain, as many grains as radii";

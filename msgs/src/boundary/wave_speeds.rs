@@ -2,10 +2,12 @@
 
 use super::check::{Check, vector_message};
 use super::error::BoundaryError;
+use super::note::{note_message, notes};
 use crate::builtin_interfaces::Time;
 use crate::msg;
 use crate::std_msgs::Header;
 use grainlab_core::contact::ContactLaw;
+use grainlab_core::notes::{Note, Status, texts};
 use grainlab_core::{MeasuredWave, Vec3, WaveMethod, WaveSpeed};
 
 const CHECK: Check = Check("WaveSpeeds");
@@ -67,7 +69,7 @@ pub struct WaveSpeedsReading {
     /// The speeds, in the order of the message; may be empty.
     pub speeds: Vec<MeasuredWave>,
     /// Notes; may be empty.
-    pub warnings: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 impl WaveSpeedsReading {
@@ -105,7 +107,8 @@ pub fn wave_speeds_message(
         contact_law_parameters: found.contact_law.map_or_else(Vec::new, |law| law.parameters()),
         smooth: found.smooth,
         speeds: found.speeds.iter().map(speed_message).collect(),
-        warnings: found.warnings.clone(),
+        warnings: texts(&found.notes),
+        notes: found.notes.iter().map(note_message).collect(),
     };
     WaveSpeedsReading::try_from(&message)?;
     Ok(message)
@@ -158,7 +161,7 @@ impl TryFrom<&msg::WaveSpeeds> for WaveSpeedsReading {
             contact_law: CHECK.optional_contact_law(&m.contact_law, &m.contact_law_parameters)?,
             smooth: m.smooth,
             speeds: m.speeds.iter().enumerate().map(|(i, s)| speed(i, s)).collect::<Result<_, _>>()?,
-            warnings: m.warnings.clone(),
+            notes: notes(CHECK, &m.notes, &m.warnings, Status::Ok)?,
         })
     }
 }

@@ -1,8 +1,9 @@
 use super::not_finite::refuses_non_finite;
 use super::refuses;
-use grainlab_core::results::InferredQuantity;
-use grainlab_msgs::boundary::{Interval, ModelResult, Quantities};
-use grainlab_msgs::msg::{Estimate, Microstructure};
+use grainlab_core::notes::{Code, Note, Status};
+use grainlab_core::results::{self, GammaUsed, InferredQuantity, Interval, Quantities};
+use grainlab_msgs::boundary::estimate_message;
+use grainlab_msgs::msg::{self, Estimate, Microstructure};
 use grainlab_msgs::{from_cdr, to_cdr};
 
 const NAN: f64 = f64::NAN;
@@ -42,7 +43,7 @@ fn message(estimates: Vec<Estimate>) -> Microstructure {
     Microstructure { source: "moduli".into(), estimates, ..Microstructure::default() }
 }
 
-fn read(estimate: Estimate) -> ModelResult {
+fn read(estimate: Estimate) -> results::Estimate {
     let received: Microstructure = from_cdr(&to_cdr(&message(vec![estimate]))).unwrap();
     received.results().unwrap().remove(0)
 }
@@ -50,11 +51,13 @@ fn read(estimate: Estimate) -> ModelResult {
 #[test]
 fn an_estimate_has_none_where_the_model_gives_no_value() {
     let e = read(estimate());
-    assert_eq!((e.model.as_str(), e.calibration.as_str(), e.status), ("ratio", "paper", "ok"));
-    assert_eq!((e.gamma_over_delta, e.gamma_over_delta_source), (Some(-0.0623), Some("total")));
+    assert_eq!((e.model.as_str(), e.calibration.as_str(), e.status), ("ratio", "paper", Status::Ok));
+    assert_eq!(e.gamma, Some(GammaUsed { value: -0.0623, source: "total" }));
     assert_eq!(e.values.0, [Some(5.2), Some(5.1), None, Some(0.06), None]);
-    assert_eq!(e.sigma.0, [Some(0.1), Some(0.2), None, Some(0.01), None]);
-    assert_eq!(e.sigma_model.0.map(|s| s.map(|s| s * s)), [Some(0.005), Some(0.02), None, Some(5e-5), None]);
+    let each = InferredQuantity::ALL;
+    assert_eq!(each.map(|q| e.sigma(q)), [Some(0.1), Some(0.2), None, Some(0.01), None]);
+    let variances = each.map(|q| e.sigma_model(q).map(|s| s * s));
+    assert_eq!(variances, [Some(0.005), Some(0.02), None, Some(5e-5), None]);
     let bounds = Quantities([Some([5.1, 5.3]), Some([4.9, 5.3]), None, Some([0.05, 0.07]), None]);
     assert_eq!(e.interval, Interval { level: Some(0.68), bounds });
     assert_eq!((e.chi_square, e.degrees_of_freedom, e.condition_number), (Some(1.5), Some(2), Some(12.0)));
@@ -64,9 +67,8 @@ fn an_estimate_has_none_where_the_model_gives_no_value() {
 fn what_is_left_out_is_not_known_and_a_zero_is_zero() {
     let bare = Estimate { gamma_over_delta_source: "none".into(), eps: vec![0.0], ..Estimate::default() };
     let e = read(bare);
-    assert_eq!((e.gamma_over_delta, e.gamma_over_delta_source), (None, None));
-    assert_eq!(e.values.0, [None, None, None, Some(0.0), None]);
-    assert_eq!((e.sigma.0, e.sigma_model.0, e.interval), ([None; 5], [None; 5], Interval::default()));
+    assert_eq!((e.gamma, e.values.0), (None, [None, None, None, Some(0.0), None]));
+    assert_eq!((e.covariance, e.covariance_model, e.interval), (None, None, Interval::default()));
     assert_eq!((e.chi_square, e.degrees_of_freedom, e.condition_number), (None, Some(0), None));
 }
 
@@ -91,15 +93,37 @@ fn each_quantity_is_read_from_its_own_field() {
 
 #[test]
 fn an_estimate_has_values_unless_it_is_unknown() {
-    for (status, expected) in
-        [(Estimate::STATUS_EXTRAPOLATED, "extrapolated"), (Estimate::STATUS_CONTRADICTORY, "contradictory")]
-    {
+    for (status, expected) in [
+        (Estimate::STATUS_EXTRAPOLATED, Status::Extrapolated),
+        (Estimate::STATUS_CONTRADICTORY, Status::Contradictory),
+    ] {
         let e = read(Estimate { status, ..estimate() });
         assert_eq!((e.status, e.values.0[0]), (expected, Some(5.2)));
     }
     let e = read(Estimate { status: Estimate::STATUS_UNKNOWN, k: vec![NAN], ..estimate() });
-    assert_eq!((e.status, e.values, e.degrees_of_freedom), ("unknown", Quantities::default(), None));
-    assert_eq!(e.gamma_over_delta, Some(-0.0623), "what it was fed with stays");
+    assert_eq!((e.status, e.values, e.degrees_of_freedom), (Status::Unknown, Quantities::default(), None));
+    assert!(e.gamma.is_some_and(|gamma| gamma.value == -0.0623), "what it was fed with stays");
+}
+
+#[test]
+fn an_estimate_crosses_the_wire_and_back_with_its_notes() {
+    let mut sent = read(estimate());
+    sent.add_notes(&[Note::grains_unknown(), Note::state_outside_calibration("p/E*", 1e-3, 1e-7, 1.6e-4)]);
+    assert!(sent.status == Status::Extrapolated && sent.notes[0].is(Code::StateOutsideCalibration));
+    let message = estimate_message(&sent);
+    assert!(message.warnings[0].starts_with("p/E* = 1.00e-3 is outside"), "{:?}", message.warnings);
+    assert_eq!(read(message), sent);
+}
+
+/// Recordings of versions 0.2.0 and before.
+#[test]
+fn sentences_without_notes_are_notes_the_first_of_which_is_the_reason_of_the_status() {
+    let warnings = vec!["far".to_owned(), "and old".to_owned()];
+    let e = read(Estimate { status: Estimate::STATUS_EXTRAPOLATED, warnings, ..estimate() });
+    let severities: Vec<_> = e.notes.iter().map(|note| (note.severity(), note.to_string())).collect();
+    assert_eq!(severities, [(Status::Extrapolated, "far".to_owned()), (Status::Ok, "and old".to_owned())]);
+    let silent = read(Estimate { status: Estimate::STATUS_CONTRADICTORY, ..estimate() });
+    assert_eq!((silent.status, silent.notes.len()), (Status::Contradictory, 0));
 }
 
 #[test]
@@ -109,6 +133,14 @@ fn each_fault_of_an_estimate_is_refused_by_name() {
         &message(vec![estimate()]),
         &[
             (|m| m.estimates[0].status = 4, "Estimate.status = 4 is refused: it must be one of 0 (ok)"),
+            (
+                |m| m.estimates[0].notes = vec![msg::Note { severity: 4, ..msg::Note::default() }],
+                "Estimate.notes[0].severity = 4 is refused: it must be one of 0 (ok)",
+            ),
+            (
+                |m| m.estimates[0].notes = vec![msg::Note { severity: 1, ..msg::Note::default() }],
+                "Estimate.status = ok is refused: it must be the worst status of the notes",
+            ),
             (
                 |m| m.estimates[0].gamma_over_delta_source = "plastic".into(),
                 "Estimate.gamma_over_delta_source = \"plastic\" is refused: it must be one of total, elastic",

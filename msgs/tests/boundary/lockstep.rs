@@ -138,9 +138,25 @@ fn a_rate_that_is_not_finite_is_refused_with_its_component() {
 /// Messages that readers refuse are not written.
 #[test]
 fn invalid_messages_are_not_published() {
-    let mut request = ServoRequest::try_from(&stress()).unwrap();
-    request.input.stress.zz = NAN;
-    assert!(Stress::try_from(&request).unwrap_err().to_string().starts_with("Stress.stress.zz = NaN"));
+    let sound = ServoRequest::try_from(&stress()).unwrap();
+    type Fault = fn(&mut ServoRequest);
+    let faults: [(Fault, &str); 9] = [
+        (|r| r.input.stress.zz = NAN, "stress.zz = NaN"),
+        (|r| r.input.rate[1] = INF, "rate[1] (yy) = inf"),
+        (|r| r.input.tangent = Some([NAN; 6]), "tangent.xx = NaN"),
+        (|r| r.input.control_interval = INF, "control_interval = inf"),
+        (|r| r.asymmetry = NAN, "asymmetry = NaN"),
+        (|r| r.strain.xy = -INF, "strain.xy = -inf"),
+        (|r| r.solid_fraction = NAN, "solid_fraction = NaN"),
+        (|r| r.coordination = NAN, "coordination = NaN"),
+        (|r| r.unbalanced = INF, "unbalanced_force_ratio = inf"),
+    ];
+    for (fault, found) in faults {
+        let mut request = sound;
+        fault(&mut request);
+        let error = Stress::try_from(&request).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("Stress.{found}")), "{error}");
+    }
     let answer = StrainRate { rate: [INF; 6], ..StrainRate::default() };
     assert!(answer.checked().unwrap_err().to_string().starts_with("StrainRate.rate[0] (xx) = inf"));
 }

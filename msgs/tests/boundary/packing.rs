@@ -1,11 +1,14 @@
 use super::not_finite::refuses_non_finite;
 use super::refuses;
 use grainlab_core::contact::{ContactLaw, RollingResistance};
-use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3, contact_search};
+use grainlab_core::{
+    Cell, Contact, EngineProgram, Mat3, Material, Packing, PathPosition, StrainOrigin, Vec3, contact_search,
+};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::{from_cdr, msg, to_cdr};
 use proptest::array::{uniform3, uniform9};
 use proptest::collection::vec;
+use proptest::option;
 use proptest::prelude::*;
 
 const INF: f64 = f64::INFINITY;
@@ -50,6 +53,17 @@ fn rolling() -> ContactLaw {
 }
 
 prop_compose! {
+    fn path()(
+        (phase, within_phase, is_known) in (0..9usize, any::<bool>(), any::<bool>()),
+        strain_origin in prop_oneof![Just(StrainOrigin::Reference), Just(StrainOrigin::FirstStep), Just(StrainOrigin::Unknown)],
+        engine in option::of(("[a-z]{1,9}", "[0-9.]{0,9}", any::<u32>())),
+    ) -> Option<PathPosition> {
+        let engine = engine.map(|(name, version, ranks)| EngineProgram { name, version, ranks });
+        is_known.then(|| PathPosition::new(phase, within_phase, strain_origin, engine))
+    }
+}
+
+prop_compose! {
     fn packing()(
         grains in vec((0.05..0.3f64, uniform3(-1.0..1.0f64).prop_map(Vec3::from), vector(), vector()), 1..6),
         (step, time, time_step) in (any::<u64>(), number(), positive()),
@@ -57,14 +71,14 @@ prop_compose! {
         (shear_modulus, poisson_ratio, density) in (positive(), 0.0..=0.5f64, positive()),
         friction in prop_oneof![Just(INF), Just(0.0), positive()],
         (first, share, forces) in (any::<u32>(), -1.0..50.0f64, [vector(), vector()]),
-        resists_rolling in any::<bool>(),
+        (resists_rolling, path) in (any::<bool>(), path()),
     ) -> Packing {
         // A cell that is large enough for the five largest spheres.
         let cell = Cell::new(matrix_of(&cell)).unwrap();
         let material = Material { shear_modulus, poisson_ratio, density };
         let spheres: (Vec<f64>, Vec<Vec3>) = grains.iter().map(|g| (g.0, g.1)).unzip();
         Packing {
-            step, time, time_step, deformation, friction, cell, material,
+            step, time, time_step, deformation, friction, cell, material, path,
             law: if resists_rolling { rolling() } else { ContactLaw::default() },
             ids: (0..grains.len() as u32).map(|k| first.wrapping_add(k)).collect(),
             radii: grains.iter().map(|g| g.0).collect(),
@@ -90,6 +104,35 @@ fn a_packing_without_a_reference_state_has_no_deformation() {
     let packing = Packing::try_from(&message).unwrap();
     assert!(packing.deformation.iter().all(|v| v.is_nan()));
     assert_eq!(to_cdr(&packing_message(&packing, "pair", vec![1, 2])), to_cdr(&message));
+}
+
+/// Recordings of versions 0.2.0 and before.
+#[test]
+fn the_path_of_a_recording_without_one_is_in_its_run_state() {
+    let path = |run_state: &[u8]| {
+        let message = msg::Packing { run_state: run_state.to_vec(), ..pair() };
+        Packing::try_from(&message).unwrap().path
+    };
+    let version_4 = br#"{"version":4,"phase":2,"time":0.1,"strain_origin":"first_step","within_phase":true,
+        "engine":{"program":{"name":"lammps","version":"2025","ranks":2},"state":"AA=="}}"#;
+    let program = EngineProgram { name: "lammps".into(), version: "2025".into(), ranks: 2 };
+    assert_eq!(path(version_4), Some(PathPosition::new(2, true, StrainOrigin::FirstStep, Some(program))));
+    let mut words = [0u64; 26];
+    (words[0], words[3], words[8]) = (3, 2, 1);
+    let version_3: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
+    assert_eq!(path(&version_3), Some(PathPosition::new(2, false, StrainOrigin::Reference, None)));
+    assert_eq!((path(&version_3[..200]), path(b"")), (None, None));
+}
+
+#[test]
+fn a_path_with_an_unknown_origin_of_strain_is_refused_by_its_field() {
+    let with = |strain_origin| {
+        let path = msg::PathPosition { strain_origin, ..msg::PathPosition::default() };
+        Packing::try_from(&msg::Packing { path: vec![path], ..pair() })
+    };
+    assert!(with(msg::PathPosition::UNKNOWN).is_ok());
+    let refused = with(3).unwrap_err().to_string();
+    assert!(refused.contains("Packing.path[0].strain_origin = 3"), "{refused}");
 }
 
 proptest! {

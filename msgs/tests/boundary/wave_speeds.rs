@@ -50,6 +50,7 @@ fn sent() -> msg::WaveSpeeds {
         smooth: true,
         speeds: vec![compression, shear],
         warnings: vec!["send less".to_owned()],
+        notes: vec![msg::Note { text: "send less".to_owned(), ..msg::Note::default() }],
     }
 }
 
@@ -69,7 +70,7 @@ fn an_inversion_reads_the_speeds_that_were_sent() {
         WaveSpeed { direction: Vec3::z(), polarization: Vec3::z(), speed: 500.0, stddev: Some(1.5) };
     let shear = WaveSpeed { polarization: Vec3::x(), speed: 300.0, stddev: None, ..compression };
     assert_eq!(r.measured(), [compression, shear]);
-    assert_eq!(r.warnings, ["send less"]);
+    assert_eq!(grainlab_core::notes::texts(&r.notes), ["send less"]);
     let [p, s] = &r.speeds[..] else { panic!("two speeds") };
     assert_eq!((p.method, p.frequency, p.strain_amplitude), (WaveMethod::Dispersion, None, 0.0));
     assert_eq!((s.method, s.frequency, s.strain_amplitude), (WaveMethod::FirstArrival, Some(2e4), 1e-7));

@@ -10,12 +10,12 @@
 //! let packing = simulate("demo", &["grains.count=200", "seed=2"])?.last().expect("the last packing is published")?;
 //! let report = measure(&packing)?;
 //! println!("{} contacts at {:.0} Pa", packing.contacts.len(), report.pressure());
-//! report.warnings.iter().for_each(|doubt| eprintln!("{doubt}"));
+//! report.notes.iter().for_each(|doubt| eprintln!("{doubt}"));
 //!
 //! let observation = Observation::of(&report).expect("a jammed packing").with_relative_error(0.01);
 //! let estimate = invert(&observation)?;
 //! for q in InferredQuantity::countable() {
-//!     println!("{}: inferred {:?}, counted {:?}", q.symbol(), estimate.structure.get(q), report.counted(q));
+//!     println!("{}: inferred {:?}, counted {:?}", q.symbol(), estimate.values[q], report.counted(q));
 //! }
 //! # Ok(())
 //! # }
@@ -44,9 +44,10 @@ mod state;
 
 pub use error::Error;
 pub use grainlab_core::contact::ContactLaw;
-pub use grainlab_core::results::{InferredQuantity, Microstructure, PackingReport};
+pub use grainlab_core::notes::{Note, Status};
+pub use grainlab_core::results::{Estimate, InferredQuantity, Microstructure, PackingReport};
 pub use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Stiffness, Vec3};
-pub use grainlab_emt::{Conditions, Estimate, Measured, Moduli, Observation, Status, StrainRatio};
+pub use grainlab_emt::{Conditions, Measured, Moduli, Observation, StrainRatio};
 pub use grainlab_recordings::import::ImportOptions;
 pub use measure::{Measurement, measure};
 pub use recording::{Loaded, Recording, load, open};
@@ -59,5 +60,6 @@ pub use state::State;
 /// If the data lack something that the model needs, or no packing can have them.
 pub fn invert(observation: &Observation) -> Result<Estimate, Error> {
     let model = grainlab_emt::model("relaxed").expect("the recommended model exists");
-    model.infer(observation, model.default_calibration()).map_err(|e| Error::Inversion(e.to_string()))
+    let inversion = model.infer(observation, model.default_calibration());
+    inversion.map(|found| found.estimate()).map_err(|e| Error::Inversion(e.to_string()))
 }

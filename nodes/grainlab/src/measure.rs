@@ -1,6 +1,7 @@
 //! A packing measured.
 
 use crate::{Error, State};
+use grainlab_core::notes::Note;
 use grainlab_core::results::{PackingReport, warnings};
 use grainlab_micromechanics::{Settings, analyze};
 use std::ops::Deref;
@@ -12,7 +13,7 @@ pub struct Measurement {
     pub report: PackingReport,
     /// Notes on the import of the packing, and warnings as `grainlab analyze` prints them: motion, forces that do not balance or
     /// are not those of the contact law, contacts that are missing. None for most packings at rest.
-    pub warnings: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 impl Deref for Measurement {
@@ -34,9 +35,9 @@ pub fn measure(state: &State) -> Result<Measurement, Error> {
         return Err(failed(&"the packing has no grains"));
     }
     state.packing.check().and_then(|()| state.packing.check_consistency()).map_err(|e| failed(&e))?;
-    let mut report = analyze(&state.packing, &Settings::default()).map_err(|e| failed(&e))?.report;
-    let position = state.position().inspect(|position| position.judge_strain(&mut report));
-    let found = position.and_then(|p| p.warning()).into_iter().chain(warnings(&state.packing, &report));
-    let new: Vec<_> = found.filter(|w| !state.notes.contains(w)).collect();
-    Ok(Measurement { report, warnings: state.notes.iter().cloned().chain(new).collect() })
+    let report = analyze(&state.packing, &Settings::default()).map_err(|e| failed(&e))?.report;
+    let found = warnings(&state.packing, &report).into_iter();
+    let found = found.filter(|note| !state.notes.contains(&note.to_string()));
+    let notes = state.notes.iter().cloned().map(Note::remark).chain(found).collect();
+    Ok(Measurement { report, notes })
 }

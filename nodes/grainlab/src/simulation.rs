@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::state::State;
 use grainlab_core::Mat3;
-use grainlab_dem::{Compute, Simd};
+use grainlab_engine::Compute;
 use grainlab_recordings::scenes;
 use std::time::{Duration, Instant};
 
@@ -67,7 +67,7 @@ impl Simulation {
     /// # Errors
     /// If there are no or too many threads.
     pub fn with_threads(mut self, threads: usize) -> Result<Self, Error> {
-        let compute = Compute::new(Simd::best(), threads).map_err(|e| Error::Scene(e.to_string()))?;
+        let compute = Compute::new(threads).map_err(|e| Error::Scene(e.to_string()))?;
         self.run.set_compute(compute);
         Ok(self)
     }

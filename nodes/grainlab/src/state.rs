@@ -1,7 +1,6 @@
 //! A packing with its place in a run.
 
 use grainlab_core::Packing;
-use grainlab_experiment::PathPosition;
 use grainlab_recordings::import::Imported;
 use std::ops::Deref;
 
@@ -14,12 +13,6 @@ pub struct State {
     pub run_state: Vec<u8>,
     /// Notes on its import: contacts found from positions, quantities that disagree.
     pub notes: Vec<String>,
-}
-
-impl State {
-    pub(crate) fn position(&self) -> Option<PathPosition> {
-        PathPosition::of(&self.run_state)
-    }
 }
 
 impl Deref for State {

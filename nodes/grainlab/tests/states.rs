@@ -37,7 +37,7 @@ fn a_state_resumes_its_run_to_the_same_packings() {
 fn a_packing_that_contradicts_itself_is_not_measured() {
     let state = simulate("demo", &SMALL).unwrap().last().unwrap().unwrap();
     let measured = measure(&state).unwrap();
-    assert!(measured.pressure() > 4e4 && measured.warnings.is_empty(), "{:?}", measured.warnings);
+    assert!(measured.pressure() > 4e4 && measured.notes.is_empty(), "{:?}", measured.notes);
     let faults: [Change; 6] = [
         |s| s.packing.radii.iter_mut().for_each(|r| *r *= 2.0),
         |s| s.packing.contacts.iter_mut().for_each(|c| c.overlap *= 10.0),
@@ -68,7 +68,7 @@ fn a_packing_that_no_law_made_is_measured_with_a_warning() {
     for (change, text) in doubts {
         let mut doubtful = state.clone();
         change(&mut doubtful);
-        let found = measure(&doubtful).unwrap().warnings;
+        let found = grainlab_core::notes::texts(&measure(&doubtful).unwrap().notes);
         assert!(found.iter().any(|w| w.contains(text)), "{text}: {found:?}");
     }
 }

@@ -7,7 +7,7 @@ use grainlab_console::Failure;
 use grainlab_core::Material;
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{
-    Calibration, Conditions, EmtError, Estimate, Measured, Model, Moduli, Observation, StrainRatio,
+    Calibration, Conditions, EmtError, Inversion, Measured, Model, Moduli, Observation, StrainRatio,
     StrainRatioSource,
 };
 use serde::Deserialize;
@@ -85,10 +85,10 @@ fn of(
 ) -> Result<Vec<Row>, Failure> {
     let observations: Vec<Observation> = states.iter().map(HeldOut::observation).collect();
     let all = || Ok(observations.iter().map(|o| model.infer(o, calibration)).collect());
-    let (seconds, found): (f64, Result<Vec<Result<Estimate, EmtError>>, Failure>) = timed(passes, all)?;
+    let (seconds, found): (f64, Result<Vec<Result<Inversion, EmtError>>, Failure>) = timed(passes, all)?;
     let found = found?;
     let quantity = |family: Family, quantity: InferredQuantity, truth: fn(&HeldOut) -> f64| {
-        let error = |(state, found): (&HeldOut, &Result<Estimate, EmtError>)| {
+        let error = |(state, found): (&HeldOut, &Result<Inversion, EmtError>)| {
             Some(found.as_ref().ok()?.structure.get(quantity)? - truth(state))
         };
         let errors: Vec<f64> = states.iter().zip(&found).filter_map(error).collect();

@@ -2,9 +2,10 @@
 
 use fuzzing::{Counting, Target};
 use grainlab_core::contact::ContactLaw;
+use grainlab_core::results::Estimate;
 use grainlab_core::results::PackingReport;
 use grainlab_core::{Cell, Contact, Packing, Vec3};
-use grainlab_msgs::boundary::{ModelResult, ModuliReading, WaveSpeedsReading, packing_message};
+use grainlab_msgs::boundary::{ModuliReading, WaveSpeedsReading, packing_message};
 use grainlab_msgs::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use grainlab_msgs::{Message, from_cdr, msg, rcl_interfaces, rosgraph_msgs, tf2_msgs, to_cdr};
 
@@ -73,7 +74,7 @@ fn every_message_gives_a_value_or_an_error() {
     let estimates = vec![msg::Estimate::default(); 2];
     decode("cdr-microstructure", msg::Microstructure { estimates, ..Default::default() }, |m| {
         drop(m.results());
-        m.estimates.iter().for_each(|e| drop(ModelResult::try_from(e)));
+        m.estimates.iter().for_each(|e| drop(Estimate::try_from(e)));
     });
     decode("cdr-packing-chunk", msg::PackingChunk::default(), |_| ());
     decode("cdr-packing-credit", msg::PackingCredit::default(), |_| ());

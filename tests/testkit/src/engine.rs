@@ -4,7 +4,8 @@ use crate::packings::{Keys, keys, touching};
 use grainlab_core::{
     Cell, ComponentControl, Contact, Mat3, Material, Packing, ServoLaw, Vec3, effective_radius,
 };
-use grainlab_dem::{Engine, EngineSettings, TimeStep};
+use grainlab_dem::Engine;
+use grainlab_engine::{EngineSettings, TimeStep};
 use grainlab_servo::{ServoInput, ServoOutput};
 
 /// Radius of a grain, m.

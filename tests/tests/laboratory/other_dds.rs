@@ -5,7 +5,7 @@ use grainlab_any_message::{Schema, Shown};
 use grainlab_emt_inversion::{Settings, microstructure_of_speeds};
 use grainlab_msgs::msg::{Estimate, Microstructure, WaveSpeeds};
 use grainlab_msgs::{TypeInfo, topics};
-use grainlab_node_kit::{Bus, DdsBus, Names, Network};
+use grainlab_node_kit::{Bus, DdsBus, Graph, Names, Network};
 use grainlab_recordings::{Recording, Selection};
 use grainlab_testkit::nightly;
 use serde_json::Value;

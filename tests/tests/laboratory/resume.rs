@@ -6,7 +6,7 @@ use grainlab_recordings::{Recording, Selection};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use system_tests::bodies::{assert_same, decoded, distinct, recorded};
-use system_tests::lab::{LONG, Lab, SLOW, scene_path, summary, undisturbed};
+use system_tests::lab::{LONG, Lab, SLOW, golden, scene_path, summary, undisturbed};
 use system_tests::process::{Ended, Process, children, runs, send};
 use system_tests::wait::{LIMIT, until};
 
@@ -237,4 +237,34 @@ fn messages_that_a_file_has_lost_since_they_were_written_count_as_lost() {
     assert!(total("lost") > 0 && total("recorded") == readable, "{readable} of {summary}");
     let said = ended.stdout + &ended.stderr;
     assert!(said.contains("chunk"), "the damage is not named: {said}");
+}
+
+/// The recording was interrupted in the last phase, with one packing measured. The definitions of its messages have no paths of
+/// packings and no notes.
+#[test]
+fn a_run_of_an_earlier_version_is_read_reported_and_resumed_to_the_bytes_of_this_one() {
+    let lab = Lab::new();
+    let run = lab.folder().join("earlier");
+    std::fs::create_dir(&run).unwrap();
+    for file in ["earlier_0.mcap", "metadata.yaml", "scene.toml", "launch.json", "summary.json"] {
+        std::fs::copy(golden("earlier_version").join(file), run.join(file)).unwrap();
+    }
+    let path = run.to_string_lossy();
+    for command in ["analyze", "report"] {
+        lab.run(&[command, &path]).assert_code(0);
+    }
+    resume(&lab, &run).assert_code(0);
+    let expected = undisturbed(&["--set", "grains.count=200", "--set", "phase.settle.until.hold=2e-4"]);
+    for topic in ["/packing", "/packing_report"] {
+        assert_eq!(distinct(&run, topic).last(), distinct(&expected, topic).last(), "{topic}");
+    }
+    let recording = Recording::open(&run).unwrap();
+    let packings = recording.messages(&Selection::topics(["/packing"])).unwrap();
+    let steps: Vec<_> = packings.map(|packing| packing.decoded::<msg::Packing>().unwrap().step).collect();
+    assert!(steps.is_sorted() && steps.len() == 4, "{steps:?}");
+    assert_eq!(recording.check().warnings, []);
+    let states = lab.run(&["analyze", &path, "--format", "json"]).assert_code(0).json();
+    // The saved state is there twice: as it was recorded, and with its path.
+    assert_eq!(states.as_array().map(Vec::len), Some(steps.len()));
+    lab.run(&["report", &path]).assert_code(0);
 }

@@ -1,13 +1,13 @@
 //! Errors of a comparison.
 
-use grainlab_dem::DemError;
+use grainlab_engine::EngineError;
 
 /// Why a comparison could not be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum VerificationError {
     /// The engine ended.
     #[error("the engine: {0}")]
-    Engine(#[from] DemError),
+    Engine(#[from] EngineError),
     /// A sphere has no size.
     #[error("a sphere of radius {0:e} m fits into no cell: the reference data are wrong")]
     Cell(f64),

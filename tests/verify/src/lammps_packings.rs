@@ -3,7 +3,8 @@
 use crate::error::VerificationError;
 use crate::row::{Measure, Point, Row};
 use grainlab_core::{Mat3, Packing};
-use grainlab_dem::{Engine, EngineSettings};
+use grainlab_dem::Engine;
+use grainlab_engine::EngineSettings;
 use grainlab_micromechanics::{Settings, analyze};
 
 /// The name of the suite.

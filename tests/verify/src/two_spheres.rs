@@ -3,7 +3,8 @@
 use crate::error::VerificationError;
 use grainlab_core::contact::{ContactLaw, TangentialLaw};
 use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
-use grainlab_dem::{Engine, EngineSettings, TimeStep};
+use grainlab_dem::Engine;
+use grainlab_engine::{EngineSettings, TimeStep};
 
 /// Radius of the sphere that stands for a plane, over that of the sphere that meets it. R* is then 1e-5 below that of a plane,
 /// and positions are exact to 1e-11 radii.

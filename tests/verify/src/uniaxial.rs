@@ -4,7 +4,8 @@ use crate::error::VerificationError;
 use crate::reference::table;
 use crate::row::{Measure, Point, Row};
 use grainlab_core::{Packing, SymTensor};
-use grainlab_dem::{Engine, EngineSettings, TimeStep};
+use grainlab_dem::Engine;
+use grainlab_engine::{EngineSettings, TimeStep};
 
 /// The name of the suite.
 pub const NAME: &str = "uniaxial";

@@ -4,7 +4,8 @@
 
 use grainlab_acoustics::{Settings, Survey, measure};
 use grainlab_core::{Cell, Mat3, Material, Vec3};
-use grainlab_dem::{Engine, EngineSettings};
+use grainlab_dem::Engine;
+use grainlab_engine::EngineSettings;
 
 const RADIUS: f64 = 1e-4;
 const CELLS: usize = 3;
@@ -34,6 +35,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             d.x, d.y, d.z, p.x, p.y, p.z, m.wave.speed
         );
     }
-    found.warnings.iter().for_each(|w| println!("note: {w}"));
+    found.notes.iter().for_each(|w| println!("note: {w}"));
     Ok(())
 }

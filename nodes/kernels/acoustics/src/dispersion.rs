@@ -22,14 +22,15 @@ pub use settings::Settings;
 
 use crate::backbone::Backbone;
 use crate::curve::{DispersionCurve, DispersionPoint};
-use crate::error::{AcousticsError, no_signal};
+use crate::error::{AcousticsError, in_brackets, no_signal};
+use crate::left_out::keep;
 use crate::ray::Ray;
-use crate::warning::{Warning, keep};
 use alignment::{aligned, completed, nearest_of};
 use bloch::Bloch;
 use christoffel_modes::{AcousticTensor, long_wave_polarizations};
 use error::SolveError;
 use extrapolation::Extrapolation;
+use grainlab_core::notes::Note;
 use grainlab_core::results::NoStiffness;
 use grainlab_core::{Packing, Vec3};
 use grainlab_micromechanics::network::{SpringNetwork, relaxed_stiffness};
@@ -74,12 +75,9 @@ pub fn curves(
     settings.validated()?;
     let backbone = Backbone::new(packing)?;
     let diameter = mean_diameter(packing);
-    let (found, warnings) =
+    let (found, _, left_out) =
         Dispersion { backbone: &backbone, diameter, alignment: Alignment::InPlane, settings }.curves(rays)?;
-    match warnings.into_iter().find(|warning| matches!(warning, Warning::LeftOut(_))) {
-        Some(Warning::LeftOut(error)) => Err(error),
-        _ => Ok(found.curves),
-    }
+    left_out.map_or(Ok(found.curves), Err)
 }
 
 /// Mean grain diameter, the unit of wavelengths, m.
@@ -106,20 +104,23 @@ pub(crate) struct Dispersion<'a> {
 }
 
 impl Dispersion<'_> {
-    /// The curves of all rays. Rays whose modes are not found are left out with a warning. If all are, the first
-    /// error is returned.
-    pub(crate) fn curves(&self, rays: &[Ray]) -> Result<(RayCurves, Vec<Warning>), AcousticsError> {
+    /// Returns the curves of all rays, with notes, and the first error of rays that are left out because their modes were not
+    /// found. If all are, the first error is the result.
+    pub(crate) fn curves(
+        &self,
+        rays: &[Ray],
+    ) -> Result<(RayCurves, Vec<Note>, Option<AcousticsError>), AcousticsError> {
         let found: Vec<_> = rays.par_iter().map(|ray| self.along(ray)).collect();
-        let (mut all, mut warnings) = (RayCurves::default(), Vec::new());
-        keep(found, &mut warnings, |(found, warning), warnings| {
+        let (mut all, mut notes) = (RayCurves::default(), Vec::new());
+        let left_out = keep(found, &mut notes, |(found, note), notes| {
             all.curves.extend(found.curves);
             all.modes.extend(found.modes);
-            warnings.extend(warning);
+            notes.extend(note);
         })?;
-        Ok((all, warnings))
+        Ok((all, notes, left_out))
     }
 
-    fn along(&self, ray: &Ray) -> Result<(RayCurves, Option<Warning>), AcousticsError> {
+    fn along(&self, ray: &Ray) -> Result<(RayCurves, Option<Note>), AcousticsError> {
         let settings = self.settings;
         let mut wavelengths = settings.wavelengths.clone();
         wavelengths.sort_by(|a, b| b.total_cmp(a));
@@ -137,13 +138,12 @@ impl Dispersion<'_> {
             };
             if last || !too_short {
                 let (series, modes) = found?.ok_or_else(no_limit)?;
-                let (direction, ratio) = (ray.direction.into(), series.ratio);
-                let warning =
-                    series.is_too_short(settings.tolerance).then_some(Warning::TooShort { direction, ratio });
+                let note = || Note::too_short(in_brackets(&ray.direction.into()), series.ratio);
+                let note = series.is_too_short(settings.tolerance).then(note);
                 let longest = wavelengths[0];
                 let unseen = if longest < FOLLOWED { UNSEEN * 100.0 / longest } else { 0.0 };
                 let [curves, modes] = [series, modes].map(|s| s.curves(ray.direction, unseen));
-                return Ok((RayCurves { curves, modes }, warning));
+                return Ok((RayCurves { curves, modes }, note));
             }
             wavelengths.iter_mut().for_each(|w| *w *= f64::from(1 << AT_ONCE));
         }

@@ -94,7 +94,7 @@ pub enum AcousticsError {
     Network(#[from] grainlab_micromechanics::MicroError),
     /// The engine failed.
     #[error(transparent)]
-    Engine(#[from] grainlab_dem::DemError),
+    Engine(#[from] grainlab_engine::EngineError),
 }
 
 /// Refuses a setting whose value is not `valid`.

@@ -4,15 +4,15 @@ use crate::backbone::Backbone;
 use crate::curve::DispersionCurve;
 use crate::dispersion::{Alignment, Dispersion};
 use crate::effective_density::EffectiveDensity;
-use crate::error::{AcousticsError, no_signal};
+use crate::error::{AcousticsError, in_brackets, no_signal};
 use crate::instrument::Instrument;
 use crate::noise::{Noise, seed_at};
 use crate::settings::{MethodSettings, Settings};
 use crate::survey::Survey;
 use crate::trace::Trace;
-use crate::warning::Warning;
 use crate::{dispersion, time_of_flight};
-use grainlab_core::results::{SpringNote, StiffnessMethod};
+use grainlab_core::notes::{Code, Note};
+use grainlab_core::results::{StiffnessMethod, spring_notes};
 use grainlab_core::{MeasuredWave, Packing, Vec3, WaveMethod, WaveSpeed};
 
 /// Relative standard deviation of a speed above which there is a warning.
@@ -48,8 +48,8 @@ pub struct Measurement {
     pub curves: Vec<DispersionCurve>,
     /// The traces from which the curves were evaluated; empty for dispersion.
     pub traces: Vec<Trace>,
-    /// Warnings of the measurement.
-    pub warnings: Vec<Warning>,
+    /// Limitations of the measurement.
+    pub notes: Vec<Note>,
 }
 
 /// Measures the wave speeds of `packing`. The result is the same to the last bit for any number of threads.
@@ -65,20 +65,20 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
     // Noise differs between packings.
     let seed = seed_at(settings.instrument.seed, &[packing.step]);
     let instrument = &Instrument { seed, ..settings.instrument };
-    let (mut curves, modes, traces, mut warnings) = match &settings.method {
+    let (mut curves, modes, traces, mut notes) = match &settings.method {
         MethodSettings::Dispersion(of) => {
             of.validated()?;
             let rays = survey.rays(&about, settings.modes);
             let diameter = dispersion::mean_diameter(packing);
             let alignment = if axis.is_some() { Alignment::InPlane } else { Alignment::Free };
             let method = Dispersion { backbone: &backbone, diameter, alignment, settings: of };
-            let (found, warnings) = method.curves(&rays)?;
-            (found.curves, found.modes, Vec::new(), warnings)
+            let (found, notes, _) = method.curves(&rays)?;
+            (found.curves, found.modes, Vec::new(), notes)
         }
         MethodSettings::TimeOfFlight(of) => {
             let rays = survey.lattice_rays(&packing.cell, &about, settings.modes);
-            let (curves, traces, warnings) = time_of_flight::curves(packing, &rays, of, instrument)?;
-            (curves, Vec::new(), traces, warnings)
+            let (curves, traces, notes) = time_of_flight::curves(packing, &rays, of, instrument)?;
+            (curves, Vec::new(), traces, notes)
         }
     };
     let (of_network, friction, method, strain_amplitude) = match &settings.method {
@@ -88,10 +88,9 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
         }
     };
     let smooth = friction.map_or_else(|| backbone.network.smooth(), |friction| friction == 0.0);
-    let mut notes = SpringNote::of(packing, of_network, smooth);
+    let springs = spring_notes("waves", packing, of_network, smooth).into_iter();
     // Grains that move slide by themselves.
-    notes.retain(|n| method == WaveMethod::Dispersion || !matches!(n, SpringNote::SlidingStuck { .. }));
-    warnings.extend(notes.into_iter().map(Warning::Springs));
+    notes.extend(springs.filter(|note| method == WaveMethod::Dispersion || !note.is(Code::SlidingStuck)));
     let [least, most] = frequencies(&curves);
     let effective_density = backbone.effective_density(least);
     for curve in &mut curves {
@@ -115,12 +114,12 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
     let modes: Vec<MeasuredWave> = modes.iter().map(wave).collect();
     let mut modes = with_speed_noise(&modes, instrument.speed_noise, seed_at(instrument.seed, &[MODES]));
     modes.retain(is_speed);
-    warnings.extend(waves.iter().filter(|w| !is_speed(w)).map(|MeasuredWave { wave, .. }| {
+    notes.extend(waves.iter().filter(|w| !is_speed(w)).map(|MeasuredWave { wave, .. }| {
         let reason = "the noise of speeds is as large as the speed";
-        Warning::LeftOut(no_signal("speed", &wave.direction, &wave.polarization, reason))
+        Note::left_out(no_signal("speed", &wave.direction, &wave.polarization, reason).to_string())
     }));
     waves.retain(is_speed);
-    warnings.extend(noisy(&waves));
+    notes.extend(noisy(&waves));
     let density = effective_density.mean();
     let density_stddev = effective_density.spread().hypot(density - backbone.effective_density(most).mean());
     // A smaller one is rounding.
@@ -135,7 +134,7 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
         axis,
         curves,
         traces,
-        warnings,
+        notes,
     })
 }
 
@@ -173,14 +172,12 @@ fn is_speed(measured: &MeasuredWave) -> bool {
 }
 
 /// Warnings for speeds of large uncertainty.
-fn noisy(waves: &[MeasuredWave]) -> Vec<Warning> {
+fn noisy(waves: &[MeasuredWave]) -> Vec<Note> {
     let of = |m: &MeasuredWave| {
         let relative = m.wave.stddev? / m.wave.speed;
-        (relative > NOISY).then(|| Warning::Noisy {
-            direction: m.wave.direction.into(),
-            polarization: m.wave.polarization.into(),
-            relative,
-        })
+        let [direction, polarization] =
+            [m.wave.direction, m.wave.polarization].map(|v| in_brackets(&v.into()));
+        (relative > NOISY).then(|| Note::noisy(direction, polarization, relative))
     };
     waves.iter().filter_map(of).collect()
 }

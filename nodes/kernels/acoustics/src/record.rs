@@ -14,7 +14,8 @@
 //! - `passage`: a record and its path; `cleaned`: checks, offset; `filter`: electronics; `band`: duration and frequency of the source
 //! - `ambient`: the noise, its spectrum, and noise of the same kind for computed records
 //! - `distinct`: the waves in a receiver; `chosen`: the one of the mode
-//! - `separated`: the arrival without crosstalk; `forward`: computed records; `travel_time`: picks with bias and error
+//! - `separated`: the arrival without crosstalk; `forward`: computed records; `copies`: picks less their bias in computed copies;
+//!   `pick`: a pick and its speed; `travel_time`: picks with their errors
 
 #[cfg(test)]
 #[path = "../tests/claims/computed_records.rs"]
@@ -26,12 +27,15 @@ mod ambient;
 mod band;
 mod chosen;
 mod cleaned;
+mod copies;
 mod distinct;
 mod filter;
 mod forward;
 mod passage;
+mod pick;
 mod separated;
 mod travel_time;
 
 pub use passage::{Passage, Record};
-pub use travel_time::{Pick, Picks, picks};
+pub use pick::Pick;
+pub use travel_time::{Picks, picks};

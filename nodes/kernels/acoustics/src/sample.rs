@@ -5,7 +5,8 @@ use crate::dispersion::mean_diameter;
 use crate::error::{AcousticsError, setting};
 use grainlab_core::contact::TangentialLaw;
 use grainlab_core::{Mat3, Packing, Vec3};
-use grainlab_dem::{DemError, Engine, EngineSettings, TimeStep};
+use grainlab_dem::Engine;
+use grainlab_engine::{EngineError, EngineSettings, TimeStep};
 use grainlab_micromechanics::probe::Relaxation;
 use grainlab_micromechanics::unbalanced_force_ratio;
 
@@ -41,7 +42,7 @@ pub(crate) struct Sample {
 impl Sample {
     /// `packing` with `friction` (`None`: that of the packing), relaxed to rest.
     pub(crate) fn new(packing: &Packing, friction: Option<f64>) -> Result<Self, AcousticsError> {
-        packing.check().map_err(DemError::from)?;
+        packing.check().map_err(EngineError::from)?;
         let friction = friction.unwrap_or(packing.friction);
         setting("friction", friction, friction >= 0.0, "0 or more, infinite for no sliding")?;
         let mut packing = Packing { friction, ..packing.clone() };

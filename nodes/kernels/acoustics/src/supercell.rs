@@ -7,7 +7,7 @@ pub(crate) mod lattice;
 
 use crate::error::{AcousticsError, setting};
 use grainlab_core::{Contact, Packing, Vec3};
-use grainlab_dem::DemError;
+use grainlab_engine::EngineError;
 use lattice::Layers;
 
 /// Maximum number of grains.
@@ -37,7 +37,7 @@ pub struct Supercell {
 /// The copies are stacked by the lattice vector nearest to the normal, and the edges across it are the shortest
 /// possible, so that the cell has the least skew.
 pub fn supercell(packing: &Packing, indices: [i32; 3], copies: u32) -> Result<Supercell, AcousticsError> {
-    packing.check().map_err(DemError::from)?;
+    packing.check().map_err(EngineError::from)?;
     let n = packing.grains();
     let grains = (copies as usize).saturating_mul(n);
     let fits = copies > 0 && grains <= MAX_GRAINS;
@@ -83,6 +83,7 @@ pub fn supercell(packing: &Packing, indices: [i32; 3], copies: u32) -> Result<Su
         spins: times(&packing.spins),
         positions,
         contacts,
+        path: None,
         ..*packing
     };
     Ok(Supercell { packing: repeated, path, along })
@@ -103,7 +104,7 @@ fn contact(
     let j = other as usize * n + c.j as usize;
     let image = image + taken[j] - taken[i];
     if image.iter().any(|k| k.abs() > MAX_IMAGE) {
-        return Err(DemError::Image { grain: c.i }.into());
+        return Err(EngineError::Image { grain: c.i }.into());
     }
     let image: [i8; 3] = image.map(|k| k as i8).into();
     Ok(c.named(i as u32, j as u32, image))

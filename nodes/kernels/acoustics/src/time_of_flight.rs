@@ -28,11 +28,12 @@ pub use settings::{ArrivalPick, Settings};
 use crate::curve::DispersionCurve;
 use crate::error::AcousticsError;
 use crate::instrument::Instrument;
+use crate::left_out::keep;
 use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::trace::Trace;
-use crate::warning::{Warning, keep};
 use grainlab_core::Packing;
+use grainlab_core::notes::Note;
 use measurement::TimeOfFlight;
 use rayon::prelude::*;
 use wave_path::paths;
@@ -40,7 +41,7 @@ use wave_path::paths;
 /// The curves of all polarizations of all rays, in that order, and their traces.
 ///
 /// Each ray must name lattice planes. A polarization whose arrivals are hidden by noise is left out with a
-/// [`Warning::LeftOut`]. If all are, the first error is returned. The result is the same to the last bit for
+/// a note. If all are, the first error is returned. The result is the same to the last bit for
 /// any number of threads.
 #[allow(clippy::type_complexity)]
 pub fn curves(
@@ -48,20 +49,20 @@ pub fn curves(
     rays: &[Ray],
     settings: &Settings,
     instrument: &Instrument,
-) -> Result<(Vec<DispersionCurve>, Vec<Trace>, Vec<Warning>), AcousticsError> {
+) -> Result<(Vec<DispersionCurve>, Vec<Trace>, Vec<Note>), AcousticsError> {
     settings.validated()?;
     instrument.validated()?;
     let paths = paths(packing, rays)?;
     let sample = Sample::new(packing, settings.friction)?;
     let measured = |path| TimeOfFlight { path, sample: &sample }.measure(settings, instrument);
     let (mut curves, mut traces) = (Vec::new(), Vec::new());
-    let mut warnings = Vec::from_iter(sample.unbalanced.map(|unbalanced| Warning::NotAtRest { unbalanced }));
-    keep(paths.par_iter().map(measured).collect(), &mut warnings, |mut found, warnings| {
+    let mut notes = Vec::from_iter(sample.unbalanced.map(Note::not_at_rest));
+    keep(paths.par_iter().map(measured).collect(), &mut notes, |mut found, notes| {
         curves.push(found.curve);
         traces.append(&mut found.traces);
-        warnings.append(&mut found.warnings);
+        notes.append(&mut found.notes);
     })?;
-    Ok((curves, traces, warnings))
+    Ok((curves, traces, notes))
 }
 
 /// The curve of one mode from its traces, for bursts of `cycles` periods at one or more frequencies. `seed`

@@ -1,5 +1,6 @@
 //! Number of contacts through planes across the cell: a periodic packing has no plane that few contacts cross.
 
+use crate::notes::Note;
 use crate::packing::{Contact, Packing};
 
 /// Share of the expected number of contacts below which a plane is open.
@@ -87,22 +88,17 @@ impl Packing {
         std::array::from_fn(|k| between[k] as i64 + i64::from(c.image[k]))
     }
 
-    /// Returns the warning about planes that far fewer contacts cross than the others.
-    pub(crate) fn crossings_warning(&self) -> Option<String> {
+    /// Returns the note on planes that far fewer contacts cross than the others.
+    pub(crate) fn crossings_note(&self) -> Option<Note> {
         let open: Vec<(&str, Crossings)> =
             EDGES.into_iter().zip(self.crossings()).filter(|(_, c)| c.is_open()).collect();
-        let list =
-            |of: &dyn Fn(&(&str, Crossings)) -> String| open.iter().map(of).collect::<Vec<_>>().join(", ");
-        (!open.is_empty()).then(|| {
-            format!(
-                "the packing is open across {} of the cell: a plane there is crossed by only {} contacts, where {} are expected. It lies \
-                 between walls, or has a free surface, and is measured as if its cell were periodic: its stiffness is not the one of the \
-                 packing, and contacts with walls are missing",
-                list(&|(edge, _)| format!("edge {edge}")),
-                list(&|(_, c)| c.fewest.to_string()),
-                list(&|(_, c)| format!("{:.0}", c.expected)),
-            )
-        })
+        let list = |text: &dyn Fn(&(&str, Crossings)) -> String| {
+            open.iter().map(text).collect::<Vec<_>>().join(", ")
+        };
+        let edges = list(&|(edge, _)| format!("edge {edge}"));
+        let fewest = list(&|(_, c)| c.fewest.to_string());
+        let expected = list(&|(_, c)| format!("{:.0}", c.expected));
+        (!open.is_empty()).then(|| Note::open(edges, fewest, expected))
     }
 }
 
@@ -135,7 +131,7 @@ mod tests {
                 assert_eq!(c.fewest as usize, 8 * planes);
                 assert!((c.expected - f64::from(c.fewest)).abs() < 1e-9 && !c.is_open(), "{c:?}");
             }
-            assert_eq!(p.crossings_warning(), None);
+            assert_eq!(p.crossings_note(), None);
         }
     }
 
@@ -145,7 +141,7 @@ mod tests {
             let p = crystal(3, 3, 0.6, origin);
             let [a, b, c] = p.crossings();
             assert!(c.fewest == 0 && c.is_open() && !a.is_open() && !b.is_open(), "{c:?}");
-            let text = p.crossings_warning().unwrap();
+            let text = p.crossings_note().unwrap().to_string();
             assert!(text.contains("across edge c of the cell") && text.contains("only 0 contacts"), "{text}");
         }
         // A few contacts through the gap do not close it.

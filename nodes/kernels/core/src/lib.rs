@@ -11,6 +11,7 @@
 //! - [`instruction_sets`]: work compiled for those of the processor
 //! - `packing`: grains, cell and contact network at one instant; [`contact_search`]: contacts by position
 //!   ([`Packing::consistent`] holds its contacts against its positions)
+//! - `path`: the position of a packing on the loading path of its run
 //! - [`Packing::overlaps`]: how deep its contacts are, and up to which overlap a contact law holds
 //! - [`solid_like_share`]: whether grains have the surroundings of a crystal
 //! - [`Packing::crossings`]: whether contacts cross the cell everywhere, as in a periodic packing
@@ -21,6 +22,7 @@
 //! - `control`: what a loading path asks of each strain component, and the law that answers
 //! - `waves`: plane waves in a medium, measured speeds of them
 //! - [`results`]: what is measured on a packing
+//! - [`notes`]: limitations of results, and reasons, as codes and sentences
 //! - [`quantity`]: tables of what is measured: key, symbol, unit, meaning, value
 
 mod bins;
@@ -35,8 +37,10 @@ pub mod instruction_sets;
 pub mod lanes;
 mod law_comparison;
 mod material;
+pub mod notes;
 mod overlaps;
 mod packing;
+mod path;
 mod power;
 pub mod quantity;
 mod rattlers;
@@ -56,6 +60,7 @@ pub use law_comparison::{LawComparison, OTHER_LAW};
 pub use material::{Material, effective_radius};
 pub use overlaps::{OVERLAP_LIMIT, Overlaps};
 pub use packing::{Contact, Packing, PackingError};
+pub use path::{EngineProgram, PathPosition, StrainOrigin};
 pub use rattlers::{backbone, min_contacts, non_rattlers};
 pub use stiffness::{Stiffness, TransverseIsotropy};
 pub use symmetry::{Symmetry, SymmetryClass, symmetry};

@@ -1,6 +1,7 @@
 //! How far the grains of a packing overlap, and up to which overlap a contact law holds.
 
 use crate::contact::SpringLaw;
+use crate::notes::Note;
 use crate::packing::{Contact, Packing};
 
 /// Overlap over the smaller diameter beyond which no contact law holds. A run ends where two grains overlap by more, and a
@@ -97,26 +98,19 @@ impl Packing {
         Some(found)
     }
 
-    /// Returns what is wrong with overlaps beyond [`OVERLAP_LIMIT`], and its likely cause; `None` for smaller ones.
-    pub fn overlap_fault(&self) -> Option<String> {
+    /// Returns the note on overlaps beyond [`OVERLAP_LIMIT`], with their likely cause; `None` for smaller ones.
+    pub fn overlap_fault(&self) -> Option<Note> {
         self.overlaps()?.fault()
     }
 
-    /// Returns the warning about overlaps at which the contact law is doubtful, or holds no more; `None` for smaller ones.
-    pub(crate) fn overlap_warning(&self) -> Option<String> {
+    /// Returns the note on overlaps at which the contact law is doubtful, or holds no more; `None` for smaller ones.
+    pub(crate) fn overlap_note(&self) -> Option<Note> {
         let found = self.overlaps()?;
         found.fault().or_else(|| {
             let is_hertz = !matches!(self.law.springs, SpringLaw::Linear(_));
-            (is_hertz && found.largest > HERTZ_LIMIT).then(|| {
-                let [i, j] = found.grains;
-                format!(
-                    "contacts overlap by up to {:.1} % of the smaller diameter (more than {:.0} %), the deepest of grains {i} and {j}: \
-                     Hertz's law, which is for contacts far smaller than the grains, no longer holds, and forces and moduli are \
-                     only approximate",
-                    100.0 * found.largest,
-                    100.0 * HERTZ_LIMIT
-                )
-            })
+            let [i, j] = found.grains.map(f64::from);
+            (is_hertz && found.largest > HERTZ_LIMIT)
+                .then(|| Note::overlaps_deep(found.largest, HERTZ_LIMIT, i, j))
         })
     }
 }
@@ -127,18 +121,11 @@ impl Overlaps {
         self.beyond > 0
     }
 
-    fn fault(&self) -> Option<String> {
-        let Self { beyond, contacts, grains: [i, j], .. } = self;
-        (*beyond > 0).then(|| {
-            let number = if *contacts == 1 { "the contact".to_owned() } else { format!("{beyond} of {contacts} contacts") };
-            let verb = if *beyond == 1 { "overlaps" } else { "overlap" };
-            format!(
-                "{number} {verb} by more than {:.0} % of the smaller diameter, the deepest, of grains {i} and {j}, by {:.0} %: no contact \
-                 law holds there, and there are no moduli; {}",
-                100.0 * OVERLAP_LIMIT,
-                100.0 * self.largest,
-                self.cause.text()
-            )
+    fn fault(&self) -> Option<Note> {
+        let ([i, j], [beyond, contacts]) =
+            (self.grains.map(f64::from), [self.beyond, self.contacts].map(|n| n as f64));
+        (beyond > 0.0).then(|| {
+            Note::overlaps_too_deep(self.cause.text(), beyond, contacts, i, j, OVERLAP_LIMIT, self.largest)
         })
     }
 }
@@ -171,12 +158,12 @@ mod tests {
             let mut p = lattice(overlap, cube());
             assert!((p.overlaps().unwrap().largest - overlap).abs() < 1e-12);
             assert_eq!(
-                p.overlap_warning().is_some_and(|w| w.contains("Hertz's law")),
+                p.overlap_note().is_some_and(|w| w.to_string().contains("Hertz's law")),
                 is_doubtful,
                 "{overlap}"
             );
             p.law.springs = SpringLaw::EXAMPLES[1];
-            assert_eq!(p.overlap_warning(), None);
+            assert_eq!(p.overlap_note(), None);
         }
         assert_eq!(Packing { contacts: Vec::new(), ..lattice(0.1, cube()) }.overlaps(), None);
     }
@@ -186,7 +173,7 @@ mod tests {
         for springs in SpringLaw::EXAMPLES {
             let mut p = lattice(0.11, cube());
             p.law.springs = springs;
-            let text = p.overlap_warning().unwrap();
+            let text = p.overlap_note().unwrap().to_string();
             assert!(
                 text.starts_with("192 of 192 contacts overlap") && text.contains("they are diameters"),
                 "{text}"
@@ -195,14 +182,15 @@ mod tests {
         // Grains of the first layer lie between two grains of the last one, unless the cell has lost its tilt.
         let height = 3.0 + 0.75f64.sqrt();
         let tilted = |tilt: f64| {
-            lattice(0.01, Mat3::new(4.0, 0.0, tilt, 0.0, 4.0, 0.0, 0.0, 0.0, height)).overlap_warning()
+            lattice(0.01, Mat3::new(4.0, 0.0, tilt, 0.0, 4.0, 0.0, 0.0, 0.0, height)).overlap_note()
         };
         assert_eq!(tilted(0.5), None);
         let text = tilted(0.0).unwrap();
+        let text = text.to_string();
         assert!(text.contains("lacks its tilts") && text.starts_with("16 of 192"), "{text}");
         let mut one = lattice(0.01, cube());
         one.contacts[0].overlap = 0.2;
-        let text = one.overlap_warning().unwrap();
+        let text = one.overlap_note().unwrap().to_string();
         assert!(text.contains("1 of 192 contacts overlaps") && text.contains("grains 0 and"), "{text}");
         assert!(text.contains("pushed apart"), "{text}");
     }

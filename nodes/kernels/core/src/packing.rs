@@ -3,6 +3,7 @@
 use crate::cell::Cell;
 use crate::contact::ContactLaw;
 use crate::material::{Material, effective_radius};
+use crate::path::PathPosition;
 use crate::tensor::{Mat3, SymTensor, Vec3};
 
 /// One contact between two grains, or between a grain and a periodic image (its own, too).
@@ -96,20 +97,22 @@ pub struct Packing {
     pub friction: f64,
     /// Time step in force, s; 0 if the packing was not made by a simulation of ours.
     pub time_step: f64,
+    /// Position on the loading path of its run; `None`: the packing is of no run.
+    pub path: Option<PathPosition>,
 }
 
 /// Field by field; two deformations without a reference state are equal, although NaN is not.
 impl PartialEq for Packing {
     fn eq(&self, other: &Self) -> bool {
         let Self { step, time, cell, deformation, ids, radii, positions, velocities, spins, .. } = self;
-        let Self { contacts, material, law, friction, time_step, .. } = self;
+        let Self { contacts, material, law, friction, time_step, path, .. } = self;
         let o = other;
         let unknown = |f: &Mat3| f.iter().all(|v| v.is_nan());
         (*deformation == o.deformation || unknown(deformation) && unknown(&o.deformation))
             && (*step, *time, cell, ids) == (o.step, o.time, &o.cell, &o.ids)
             && (radii, positions, velocities, spins) == (&o.radii, &o.positions, &o.velocities, &o.spins)
             && (contacts, material, law) == (&o.contacts, &o.material, &o.law)
-            && (*friction, *time_step) == (o.friction, o.time_step)
+            && (*friction, *time_step, path) == (o.friction, o.time_step, &o.path)
     }
 }
 
@@ -247,6 +250,7 @@ impl Packing {
             law: ContactLaw::default(),
             friction: 0.0,
             time_step: 0.0,
+            path: None,
         }
     }
 

@@ -3,12 +3,13 @@
 //! `cargo run --release -p grainlab_dem --example collision`
 
 use grainlab_core::{Cell, Material, Vec3};
-use grainlab_dem::{DemError, Engine, EngineSettings, TimeStep};
+use grainlab_dem::Engine;
+use grainlab_engine::{EngineError, EngineSettings, TimeStep};
 
 const RADIUS: f64 = 1e-3;
 const SPEED: f64 = 0.1;
 
-fn main() -> Result<(), DemError> {
+fn main() -> Result<(), EngineError> {
     println!("damping/critical  restitution");
     for damping in [0.0, 0.1, 0.2, 0.4] {
         let settings = EngineSettings {

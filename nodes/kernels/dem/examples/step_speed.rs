@@ -3,7 +3,8 @@
 
 use grainlab_core::Packing;
 use grainlab_core::contact::ContactLaw;
-use grainlab_dem::{Engine, EngineSettings, TimeStep, gas};
+use grainlab_dem::{Engine, gas};
+use grainlab_engine::{EngineSettings, TimeStep};
 use std::time::Instant;
 
 const GRAINS: usize = 2000;

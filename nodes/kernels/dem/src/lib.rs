@@ -1,6 +1,7 @@
 //! The particle engine: frictional spheres in a deforming periodic cell.
 //!
-//! [`Engine`] steps grains at a given strain rate. Its folders follow a step, each using those before it only:
+//! [`Engine`] steps grains at a given strain rate; [`Dem`] starts such engines for runs, which know the contract of
+//! `grainlab_engine` alone. The folders follow a step, each using those before it only:
 //!
 //! - `simd`: arithmetic in one, four or eight lanes
 //! - `domain`: grains, and how they are divided among threads
@@ -8,7 +9,7 @@
 //! - `force`: the force kernel, compiled for each contact law, and the stress that forces carry
 //! - `step`: forces and motion of one step, and the stable time step
 //! - `observe`: stress, tangent stiffness and force balance of the present contacts; the running energy balance
-//! - `engine`: steps with checks, thermostat and upkeep of the lists of pairs
+//! - `engine`: steps with checks, thermostat and upkeep of the lists of pairs; the engine behind the contract
 //!
 //! [`gas`] places grains at random and moves hard spheres from collision to collision.
 //!
@@ -18,20 +19,15 @@
 
 mod domain;
 mod engine;
-mod error;
 mod force;
 pub mod gas;
 mod observe;
 mod pairs;
-mod settings;
 mod simd;
 mod step;
 
-pub use domain::compute::{Compute, ComputeError};
 pub use engine::checkpoint::Checkpoint;
 pub use engine::engine::Engine;
-pub use error::DemError;
-pub use observe::energy::EnergyBalance;
+pub use engine::factory::Dem;
 pub use observe::observables::Observables;
-pub use settings::{EngineSettings, Features, TimeStep};
-pub use simd::instruction_set::{Simd, UnknownSimd};
+pub use simd::instruction_set::{Simd, UnavailableSimd, UnknownSimd};

@@ -6,7 +6,7 @@ use grainlab_core::contact::{
 use grainlab_core::effective_radius;
 use grainlab_core::lanes::LaneVec3;
 use grainlab_core::{Cell, Packing, Vec3};
-use grainlab_dem::EngineSettings;
+use grainlab_engine::EngineSettings;
 use grainlab_testkit::Random;
 use grainlab_testkit::engine::{GLASS, RADIUS, gas, packing, setting, taken_up};
 use nalgebra::{Rotation3, Unit};

@@ -2,7 +2,8 @@
 
 use grainlab_core::contact::{ContactLaw, Linear, RollingResistance, SpringLaw, TangentialLaw};
 use grainlab_core::{Cell, Packing, Vec3};
-use grainlab_dem::{Compute, EnergyBalance, Engine, EngineSettings, Simd, TimeStep};
+use grainlab_dem::Engine;
+use grainlab_engine::{Compute, EnergyBalance, EngineSettings, TimeStep};
 use grainlab_testkit::engine::{RADIUS, gas, packing, setting, taken_up};
 
 /// As stiff as glass at some 100 kPa.
@@ -96,7 +97,7 @@ fn the_balance_changes_nothing() {
     for (law, settings) in [(LAWS[0], settings(0.3)), (LAWS[1], settings(0.3)), (LAWS[0], hot)] {
         let mut plain = pressed(law, settings);
         let mut measured = pressed(law, settings);
-        measured.set_compute(Compute::new(Simd::best(), 2).unwrap());
+        measured.set_compute(Compute::new(2).unwrap());
         measured.measure_energy(true);
         for _ in 0..30 {
             plain.run(50).unwrap();

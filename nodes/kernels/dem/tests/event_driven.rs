@@ -2,7 +2,7 @@
 //! pressure.
 
 use grainlab_core::{Cell, Mat3, Vec3};
-use grainlab_dem::DemError;
+use grainlab_dem::gas::GasError;
 use grainlab_dem::gas::{self, HardSpheres, mean_free_time};
 use grainlab_testkit::nightly;
 
@@ -257,7 +257,7 @@ fn an_interval_that_is_stopped_at_any_event_changes_nothing() {
     for limit in 0..looks.get() {
         let (mut stopped, seen) = (begin.clone(), std::cell::Cell::new(0));
         let over = || seen.replace(seen.get() + 1) >= limit;
-        assert_eq!(stopped.advance_unless(-30.0, 2e-5, &over), Err(DemError::Stopped));
+        assert_eq!(stopped.advance_unless(-30.0, 2e-5, &over), Err(GasError::Stopped));
         assert_eq!(stopped, begin);
         stopped.advance(-30.0, 2e-5).unwrap();
         assert_eq!(stopped, whole);
@@ -276,7 +276,7 @@ fn a_gas_that_can_get_no_denser_is_refused_and_left_as_it_was() {
         s.apply_thermostat(1.0);
         assert!(s.solid_fraction() < 0.7405, "denser than any packing of spheres");
     };
-    let DemError::Jammed { solid_fraction, .. } = error else { panic!("{error}") };
+    let GasError::Jammed { solid_fraction, .. } = error else { panic!("{error}") };
     assert!((0.6..0.7405).contains(&solid_fraction), "{error}");
     // One grain, whose images come nearer until they touch at φ = π/6.
     let mut s = placed(1, 0.3, 1);
@@ -285,7 +285,7 @@ fn a_gas_that_can_get_no_denser_is_refused_and_left_as_it_was() {
             break error;
         }
     };
-    let DemError::Jammed { solid_fraction, .. } = error else { panic!("{error}") };
+    let GasError::Jammed { solid_fraction, .. } = error else { panic!("{error}") };
     assert!((solid_fraction - std::f64::consts::PI / 6.0).abs() < 0.01, "{error}");
 }
 
@@ -295,7 +295,7 @@ fn what_is_no_gas_of_hard_spheres_is_refused_with_its_reason() {
     let two = |gap: f64| vec![Vec3::new(9.8, 5.0, 5.0), Vec3::new(gap - 0.2, 5.0, 5.0)];
     let new =
         |cell, radii: &[f64], x: Vec<Vec3>| HardSpheres::new(cell, radii.to_vec(), x, vec![Vec3::x(); 2]);
-    let says = |r: Result<HardSpheres, DemError>, what: &str| {
+    let says = |r: Result<HardSpheres, GasError>, what: &str| {
         let error = r.and_then(|mut s| s.advance(-0.1, 0.1)).unwrap_err().to_string();
         assert!(error.contains(what), "{error}");
     };

@@ -2,7 +2,8 @@
 
 use grainlab_core::contact::TangentialLaw;
 use grainlab_core::{Cell, Mat3, Vec3};
-use grainlab_dem::{DemError, Engine, EngineSettings};
+use grainlab_dem::{Engine, gas::GasError};
+use grainlab_engine::EngineSettings;
 use grainlab_testkit::engine::{
     self as testkit, GLASS, RADIUS, box_of, brute_force, engine, gas, packing, steps, taken_up,
 };
@@ -103,7 +104,7 @@ fn the_whole_dynamics_is_objective() {
 #[test]
 fn grains_that_do_not_fit_are_refused() {
     let error = grainlab_dem::gas::random_placement(&[RADIUS; 3000], 0.60, 1.0, 1).unwrap_err();
-    assert!(matches!(error, DemError::Placement { grains: 3000, .. }), "{error}");
+    assert!(matches!(error, GasError::Placement { grains: 3000, .. }), "{error}");
 }
 
 #[test]

@@ -2,7 +2,8 @@
 
 use grainlab_core::contact::{ContactLaw, RollingResistance, SpringLaw, TangentialLaw};
 use grainlab_core::{Contact, Packing, Vec3};
-use grainlab_dem::{Compute, Engine, EngineSettings, Simd, TimeStep};
+use grainlab_dem::{Engine, Simd};
+use grainlab_engine::{Compute, EngineSettings, TimeStep};
 use grainlab_testkit::engine::{self, RADIUS, bits, gas, packing};
 
 /// Grains enough for several threads to have something to do: more than two of the parts that they work on.
@@ -65,8 +66,11 @@ fn every_instruction_set_gives_the_same_bits_in_every_feature_set() {
         // Small grains take longer to meet.
         let steps = if unequal { 6000 } else { 3000 };
         let run = |simd| {
-            let compute = Compute::new(simd, 1).unwrap();
-            end(start(300, law, setting(friction, tangential), unequal, compute), steps)
+            let setting = setting(friction, tangential);
+            let mut engine = start(300, law, setting, unequal, Compute::default());
+            engine.set_simd(simd);
+            engine.initialise().unwrap();
+            end(engine, steps)
         };
         let scalar = run(Simd::Scalar);
         for simd in Simd::available() {
@@ -78,7 +82,7 @@ fn every_instruction_set_gives_the_same_bits_in_every_feature_set() {
 /// A gas that is held at a speed, strained into contact, then given friction, spins and another order in memory, by as
 /// many threads as each leg of the way is told; everything seen along it.
 fn journey(threads: &[usize], unequal: bool) -> Vec<u64> {
-    let compute = |leg: usize| Compute::new(Simd::best(), threads[leg % threads.len()]).unwrap();
+    let compute = |leg: usize| Compute::new(threads[leg % threads.len()]).unwrap();
     let gas = EngineSettings { thermostat_speed: Some(0.15), ..setting(0.0, TangentialLaw::Rescaled) };
     let law = if unequal { rolling(SpringLaw::HertzMindlin) } else { ContactLaw::default() };
     let mut engine = start(PARTS, law, gas, unequal, compute(0));
@@ -135,7 +139,7 @@ fn steps_one_by_one_and_steps_together_are_the_same() {
 #[test]
 fn the_stress_measured_along_the_way_is_that_of_a_snapshot_where_nothing_is_damped() {
     let undamped = EngineSettings { damping: 0.0, ..setting(0.3, TangentialLaw::Rescaled) };
-    let compute = |threads| Compute::new(Simd::best(), threads).unwrap();
+    let compute = |threads| Compute::new(threads).unwrap();
     let mut ends = Vec::new();
     for threads in [1, 2] {
         let mut engine = start(PARTS, ContactLaw::default(), undamped, true, compute(threads));
@@ -190,9 +194,9 @@ fn the_order_of_grains_in_memory_does_not_change_what_happens() {
 fn an_instruction_set_that_is_not_there_is_refused_by_name() {
     assert_eq!("avx512".parse::<Simd>(), Ok(Simd::Avx512));
     assert!("avx1024".parse::<Simd>().unwrap_err().to_string().contains("avx1024"));
-    assert!(Compute::new(Simd::Scalar, 0).is_err());
+    assert!(Compute::new(0).is_err());
     for simd in Simd::ALL {
-        assert_eq!(Compute::new(simd, 1).is_ok(), simd.is_available());
+        assert_eq!(simd.if_available().is_ok(), simd.is_available());
     }
 }
 
@@ -200,7 +204,7 @@ fn an_instruction_set_that_is_not_there_is_refused_by_name() {
 fn kicked_grains_go_on_as_if_they_had_been_that_fast() {
     let setting = setting(0.3, TangentialLaw::Incremental);
     for threads in [1, 3] {
-        let compute = Compute::new(Simd::best(), threads).unwrap();
+        let compute = Compute::new(threads).unwrap();
         let mut kicked = start(PARTS, ContactLaw::default(), setting, false, compute);
         kicked.run(7).unwrap();
         let mut set = kicked.clone();

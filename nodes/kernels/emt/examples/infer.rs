@@ -23,8 +23,8 @@ fn main() {
                     Some(format!("{} {value:.3} +- {:.3}", q.name(), estimate.stddev(q)?))
                 };
                 let values: Vec<String> = InferredQuantity::ALL.into_iter().filter_map(told).collect();
-                println!("{:16}  {:?}: {}", estimate.model, estimate.status, values.join(", "));
-                found.push((estimate.model, estimate.status));
+                println!("{:16}  {:?}: {}", estimate.model, estimate.status(), values.join(", "));
+                found.push((estimate.model, estimate.status()));
             }
             Err(why) => println!("{:16}  {why}", model.name()),
         }

@@ -1,13 +1,13 @@
-//! The warnings that apply to the estimate of any model, and the bounds of any structure.
+//! The notes that apply to the estimate of any model, and the bounds of any structure.
 
 use crate::calibration::{Calibration, NetworkState, Outside, inverse_grains};
 use crate::conditions::{Conditions, StrainRatioSource};
 use crate::domain::Domain;
 use crate::error::EmtError;
 use crate::moduli::{MODULI, Modulus};
-use crate::observation::Observation;
-use crate::probe::Probe;
-use crate::warning::Warning;
+use crate::observation::{Observation, UNKNOWN_ERROR};
+use crate::probe::{Probe, UNKNOWN_PROBE};
+use grainlab_core::notes::Note;
 use grainlab_core::results::{INFERENCE_INPUTS, InferredQuantity, Microstructure};
 
 /// Coordination number of a close packing of equal spheres, the largest possible.
@@ -70,46 +70,46 @@ pub(crate) fn check_inferred(structure: &Microstructure) -> Result<(), EmtError>
         let Some(value) = structure.get(quantity) else { continue };
         let [low, high] = if quantity.is_coordination() { [MIN_COORDINATION, MAX_COORDINATION] } else { EPS };
         if !(low..=high).contains(&value) {
-            return Err(EmtError::NoPacking { quantity: quantity.name(), value, low, high });
+            return Err(Note::no_packing(quantity.name(), value, low, high).into());
         }
     }
     Ok(())
 }
 
-/// Warnings that follow from the structure alone; a prior may change them.
-pub(crate) fn of_structure(structure: &Microstructure) -> Vec<Warning> {
-    let mut warnings = Vec::new();
+/// Notes that follow from the structure alone; a prior may change them.
+pub(crate) fn of_structure(structure: &Microstructure) -> Vec<Note> {
+    let mut notes = Vec::new();
     let coordinations = [structure.k, structure.k_hat, structure.z].into_iter().flatten();
     let highest = coordinations.fold(0.0, f64::max);
     if highest > CLOSE_PACKING {
-        warnings.push(Warning::CoordinationImpossible { coordination: highest });
+        notes.push(Note::coordination_impossible(highest));
     }
     for quantity in [InferredQuantity::K, InferredQuantity::Z] {
         if let Some(value) = structure.get(quantity).filter(|value| *value < 1.0) {
-            warnings.push(Warning::CoordinationAbsurd { quantity, value });
+            notes.push(Note::coordination_absurd(quantity.name(), value));
         }
     }
     if let Some(eps) = structure.eps.filter(|eps| !(-0.5..=1.0).contains(eps)) {
-        warnings.push(Warning::EpsOutOfRange { eps });
+        notes.push(Note::eps_out_of_range(eps));
     }
-    warnings
+    notes
 }
 
-/// Warnings that follow from the observation alone.
+/// Notes that follow from the observation alone.
 pub(crate) fn common(
     observation: &Observation,
     calibration: &Calibration,
     uses_gamma: bool,
     domain: &Domain,
-) -> Vec<Warning> {
+) -> Vec<Note> {
     let Domain { compares_state, any_contact, .. } = *domain;
     // Formulas with the solid fraction have the material of the grains, and no constants of a calibration.
     let uses_constants = !domain.needs_solid_fraction;
     let conditions = &observation.conditions;
-    let mut warnings = Vec::new();
-    let mut add = |applies: bool, warning: Warning| {
+    let mut notes = Vec::new();
+    let mut add = |applies: bool, note: Note| {
         if applies {
-            warnings.push(warning);
+            notes.push(note);
         }
     };
     let outside = |v: f64, [low, high]: [f64; 2]| !(low..=high).contains(&v);
@@ -117,53 +117,58 @@ pub(crate) fn common(
         let pressure = observation.pressure();
         // The tolerance of a servo is not an extrapolation.
         let wide = [0.99 * range[0], 1.01 * range[1]];
-        add(outside(pressure, wide), Warning::PressureOutsideFit { pressure, range });
+        add(outside(pressure, wide), Note::pressure_outside_calibration(pressure, range[0], range[1]));
     }
     if let Some(nu) =
         conditions.material.map(|m| m.poisson_ratio).filter(|_| uses_constants && !compares_state)
     {
         let calibrated = calibration.material().poisson_ratio;
-        add((nu - calibrated).abs() > 1e-6, Warning::OtherGrains { nu, calibrated });
+        add((nu - calibrated).abs() > 1e-6, Note::other_grains(nu, calibrated));
     }
-    add(conditions.contact_law.is_none() && !any_contact, Warning::ContactLawAssumed);
-    add(compares_state && observation.grains.is_none(), Warning::GrainsUnknown);
-    add(compares_state && observation.probe == Probe::Unknown, Warning::ProbeUnknown);
+    add(conditions.contact_law.is_none() && !any_contact, Note::contact_law_assumed());
+    add(compares_state && observation.grains.is_none(), Note::grains_unknown());
+    add(compares_state && observation.probe == Probe::Unknown, unknown_probe());
     if !compares_state {
-        for Outside { quantity, value, range, .. } in outside_errors(conditions, calibration) {
-            add(true, Warning::StateOutsideFit { quantity, value, range });
-        }
+        outside_errors(conditions, calibration).iter().for_each(|outside| add(true, outside.note()));
     }
     let rolls = conditions.contact_law.is_some_and(|law| law.rolling.is_some());
-    add(rolls, Warning::RollingResistance);
+    add(rolls, Note::rolling_resistance());
     if let Some(asymmetry) = observation.asymmetry {
         let scatter = SCATTER * inverse_grains(observation.grains).sqrt();
         // Independent errors of the entries of a stiffness are asymmetric, too.
         let of_errors = CERTAIN * largest_error(observation).map_or(0.0, |(_, relative)| relative);
         let usual = scatter.max(ASYMMETRY).hypot(of_errors);
-        add(asymmetry > usual, Warning::NotTransverselyIsotropic { asymmetry });
+        add(asymmetry > usual, Note::not_transversely_isotropic(asymmetry));
     }
-    add(observation.moduli.unstable(observation.covariance.as_ref(), CERTAIN), Warning::NotOneMedium);
+    add(observation.moduli.unstable(observation.covariance.as_ref(), CERTAIN), Note::not_one_medium());
     if let Some(relative) = observation.moduli.imbalance() {
         let errors = observation.covariance.as_ref();
         let stddev = errors.and_then(|c| observation.moduli.imbalance_stddev(c)).unwrap_or(0.0);
-        add(relative.abs() > ROUNDING.max(UNBALANCED * stddev), Warning::Imbalance { relative });
+        add(relative.abs() > ROUNDING.max(UNBALANCED * stddev), Note::imbalance(relative));
     }
     if let Some((modulus, relative)) = largest_error(observation) {
-        add(relative > LARGE_ERROR, Warning::ErrorsLarge { modulus, relative });
+        add(relative > LARGE_ERROR, Note::errors_large(modulus.name(), relative));
     }
     for modulus in Modulus::ALL {
-        add(observation.taken_as_unknown[modulus as usize], Warning::TakenAsUnknown { modulus });
+        add(
+            observation.taken_as_unknown[modulus as usize],
+            Note::taken_as_unknown(modulus.name(), UNKNOWN_ERROR),
+        );
     }
     for (input, relative) in state_errors(conditions, calibration) {
-        add(relative > LARGE_STATE_ERROR, Warning::StateErrorLarge { input, relative });
+        add(relative > LARGE_STATE_ERROR, Note::state_error_large(input, relative));
     }
     if uses_gamma {
         let g = conditions.gamma.value;
-        add(outside(g, [-0.3, 0.1]), Warning::GammaLarge { g });
-        add(outside(g, [-0.5, 0.25]), Warning::ContactsOpen { g });
-        add(conditions.gamma.source == StrainRatioSource::Zero, Warning::GammaAssumedZero);
+        add(outside(g, [-0.3, 0.1]), Note::gamma_large(g));
+        add(outside(g, [-0.5, 0.25]), Note::contacts_open(g));
+        add(conditions.gamma.source == StrainRatioSource::Zero, Note::gamma_assumed_zero());
     }
-    warnings
+    notes
+}
+
+fn unknown_probe() -> Note {
+    Note::probe_unknown(UNKNOWN_PROBE.z, UNKNOWN_PROBE.k, UNKNOWN_PROBE.eps)
 }
 
 /// The relative errors of the pressure and of E*, by the inputs that cause them.

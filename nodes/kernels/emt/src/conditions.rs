@@ -3,6 +3,7 @@
 use crate::error::EmtError;
 use grainlab_core::Material;
 use grainlab_core::contact::ContactLaw;
+use grainlab_core::notes::Note;
 use grainlab_core::results::StrainRatios;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -204,7 +205,7 @@ impl Conditions {
             if value.is_finite() { Ok(()) } else { Err(EmtError::NotFinite { quantity, value }) }
         };
         if self.smooth {
-            return Err(EmtError::SmoothGrains);
+            return Err(Note::smooth_grains().into());
         }
         let positive = |quantity: &'static str, value: f64| {
             finite(quantity, value)?;

@@ -2,8 +2,8 @@
 
 use crate::conditions::Conditions;
 use crate::error::EmtError;
-use crate::warning::Warning;
 use grainlab_core::contact::SpringLaw;
+use grainlab_core::notes::Note;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 
 /// Lowest and highest value, both included.
@@ -69,7 +69,7 @@ impl Domain {
     pub(crate) fn validate_contact(&self, conditions: &Conditions) -> Result<(), EmtError> {
         match conditions.contact_law.map(|law| law.springs) {
             Some(springs) if springs != SpringLaw::HertzMindlin && !self.any_contact => {
-                Err(EmtError::OtherContactLaw { law: springs.name() })
+                Err(Note::other_contact_law(springs.name()).into())
             }
             _ => Ok(()),
         }
@@ -129,7 +129,7 @@ impl Domain {
         if (low..=high).contains(&value) {
             return Ok(());
         }
-        Err(EmtError::OutsideDomain { model: self.model, quantity, value, low, high })
+        Err(Note::beyond_domain(quantity, self.model, value, low, high).into())
     }
 }
 
@@ -140,16 +140,23 @@ pub(crate) fn by_quantity<T: Copy>(known: &[(InferredQuantity, T)]) -> [Option<T
     all
 }
 
-/// The warnings of the quantities of a structure that are beyond the packings of the calibration.
+/// The notes of the quantities of a structure that are beyond the packings of the calibration.
 pub(crate) fn outside_fitted(
     fitted: &[Option<Fitted>; InferredQuantity::COUNT],
     structure: &Microstructure,
-) -> Vec<Warning> {
+) -> Vec<Note> {
     let of = |quantity: InferredQuantity| {
         let (value, Fitted { range, inside: [low, high] }) =
             structure.get(quantity).zip(fitted[quantity as usize])?;
+        let note = || match quantity {
+            InferredQuantity::Eps => {
+                Note::anisotropy_outside_calibration(quantity.name(), value, range[0], range[1])
+            }
+            _ if value < range[0] => Note::below_calibration(quantity.name(), value, range[0]),
+            _ => Note::above_calibration(quantity.name(), value, range[1]),
+        };
         // Also where it is not a number.
-        (!(low..=high).contains(&value)).then_some(Warning::OutsideFit { quantity, value, range })
+        (!(low..=high).contains(&value)).then(note)
     };
     InferredQuantity::ALL.into_iter().filter_map(of).collect()
 }

@@ -12,74 +12,34 @@ use crate::point_estimate::{Jacobian, Misfit, PointEstimate};
 use crate::prior::Prior;
 use crate::prior_conflict;
 use crate::update::{Updated, updated};
-use crate::warning::Warning;
-use grainlab_core::results::{INFERENCE_INPUTS, InferredQuantity, Microstructure, MicrostructureCovariance};
+use grainlab_core::notes::{Code, Note, Status};
+use grainlab_core::results::{
+    Estimate, GammaUsed, INFERENCE_INPUTS, InferredQuantity, Interval, Microstructure,
+    MicrostructureCovariance, Quantities,
+};
 use nalgebra::{SMatrix, SVector};
-use std::fmt;
 
 /// Level of the intervals of an [`Estimate`].
 pub const CREDIBLE_LEVEL: f64 = 0.95;
 
+/// Notes that follow from the structure and its uncertainty alone, which a prior changes.
+const OF_STRUCTURE: [Code; 8] = [
+    Code::BelowCalibration,
+    Code::AboveCalibration,
+    Code::AnisotropyOutsideCalibration,
+    Code::CoordinationImpossible,
+    Code::CoordinationAbsurd,
+    Code::EpsOutOfRange,
+    Code::OutsideDomain,
+    Code::WidenedMost,
+];
+
 /// Share of the variance of a quantity from which the input that causes it is named.
 const WIDENS: f64 = 0.5;
 
-/// Reliability of an estimate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
-    /// Model and calibration were used inside their range, and the data agree with each other and with the model.
-    Ok,
-    /// Model or calibration were used outside their range; see the warnings.
-    Extrapolated,
-    /// The data contradict each other, the model or the prior; see the warnings. Takes precedence over both others.
-    Contradictory,
-    /// There is no estimate, or one that determines nothing.
-    Unknown,
-}
-
-impl Status {
-    /// Name in texts, files and results.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Status::Ok => "ok",
-            Status::Extrapolated => "extrapolated",
-            Status::Contradictory => "contradictory",
-            Status::Unknown => "unknown",
-        }
-    }
-
-    /// That of a result of a model.
-    pub fn of(result: &Result<Estimate, EmtError>) -> Self {
-        result.as_ref().map_or(Status::Unknown, |estimate| estimate.status)
-    }
-
-    /// Decides the status, and puts the warnings that decide it first.
-    pub(crate) fn of_estimate(structure: &Microstructure, warnings: &mut [Warning]) -> Self {
-        warnings.sort_by_key(|warning| match warning {
-            of if of.is_contradiction() => 0,
-            of if of.is_extrapolation() => 1,
-            _ => 2,
-        });
-        if structure.values().iter().all(Option::is_none) {
-            Status::Unknown
-        } else if warnings.iter().any(Warning::is_contradiction) {
-            Status::Contradictory
-        } else if warnings.iter().any(Warning::is_extrapolation) {
-            Status::Extrapolated
-        } else {
-            Status::Ok
-        }
-    }
-}
-
-impl fmt::Display for Status {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-/// Estimate of one model from one observation.
+/// The inversion of one observation by one model: an estimate, and what it depends on.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Estimate {
+pub struct Inversion {
     /// Name of the model.
     pub model: &'static str,
     /// Name of the calibration.
@@ -98,10 +58,8 @@ pub struct Estimate {
     pub prior_covariance: Option<MicrostructureCovariance>,
     /// Misfit, where there are more data than unknowns.
     pub misfit: Option<Misfit>,
-    /// Status: model and calibration inside their range or not, data in agreement or not.
-    pub status: Status,
-    /// Warnings about the estimate; those that decide the status come first.
-    pub warnings: Vec<Warning>,
+    /// Limitations and contradictions; those that decide the status come first.
+    pub notes: Vec<Note>,
     inputs: Option<InputCovariance>,
     /// That of the model: its independent quantities, from which the others follow, and their ranges.
     domain: Domain,
@@ -111,7 +69,43 @@ pub struct Estimate {
     limits: [[f64; 2]; InferredQuantity::COUNT],
 }
 
-impl Estimate {
+impl Inversion {
+    /// Returns the result, without what only this model can use.
+    pub fn estimate(&self) -> Estimate {
+        // A covariance of zeros contains no information.
+        let known = |covariance: Option<MicrostructureCovariance>| covariance.filter(|c| c.amax() > 0.0);
+        let covariance = known(self.covariance());
+        Estimate {
+            model: self.model.to_owned(),
+            calibration: self.calibration.clone(),
+            values: Quantities(self.structure.values()),
+            covariance,
+            covariance_model: known(self.model_covariance),
+            interval: Interval {
+                level: covariance.map(|_| CREDIBLE_LEVEL),
+                bounds: Quantities::from_fn(|q| self.interval(q).filter(|_| covariance.is_some())),
+            },
+            chi_square: self.misfit.map(|m| m.chi_square),
+            degrees_of_freedom: Some(self.misfit.map_or(0, |m| m.degrees_of_freedom)),
+            condition_number: self.condition_number(),
+            information: Quantities::from_fn(|q| self.information(q)),
+            gamma: self.gamma.map(|g| GammaUsed { value: g.value, source: g.source.name() }),
+            status: self.status(),
+            notes: self.notes.clone(),
+        }
+    }
+
+    /// Returns the reliability of the estimate.
+    pub fn status(&self) -> Status {
+        Status::of(&self.notes)
+    }
+
+    /// Adds a note; those with the worst status come first.
+    pub(crate) fn add(&mut self, note: Note) {
+        self.notes.push(note);
+        by_severity(&mut self.notes);
+    }
+
     /// Covariance of the estimate: the sum of those of data, model and prior that are known; `None` if none is.
     pub fn covariance(&self) -> Option<MicrostructureCovariance> {
         let known = [self.data_covariance, self.model_covariance, self.prior_covariance];
@@ -143,26 +137,21 @@ impl Estimate {
             let Some(density) = prior.get(quantity) else { continue };
             with.limits[quantity as usize] = density.range();
         }
-        with.warnings.extend(prior_conflict::warnings(&self.structure, &before, prior));
-        with.decide_anew();
+        with.notes.retain(|note| !OF_STRUCTURE.iter().any(|code| note.is(*code)));
+        with.notes.extend(outside_fitted(&with.domain.fitted, &with.structure));
+        with.notes.extend(checks::of_structure(&with.structure));
+        let outside = outside_domain(&with.structure, &with.domain, &with.notes);
+        with.notes.extend(outside);
+        with.notes.extend(prior_conflict::notes(&self.structure, &before, prior));
+        by_severity(&mut with.notes);
+        with.name_widest();
         Ok(with)
-    }
-
-    /// The warnings and the status that follow from the structure and its uncertainty, after these have changed.
-    fn decide_anew(&mut self) {
-        self.warnings.retain(|warning| !warning.is_of_structure());
-        self.warnings.extend(outside_fitted(&self.domain.fitted, &self.structure));
-        self.warnings.extend(checks::of_structure(&self.structure));
-        let outside = outside_domain(&self.structure, &self.domain, &self.warnings);
-        self.warnings.extend(outside);
-        self.status = Status::of_estimate(&self.structure, &mut self.warnings);
-        self.name_widest();
     }
 
     /// Names the input of the state that contributes most of the variance of a quantity.
     fn name_widest(&mut self) {
         if let Some((input, quantity, share)) = self.widest().filter(|(_, _, share)| *share > WIDENS) {
-            self.warnings.push(Warning::WidenedMost { input, quantity, share });
+            self.notes.push(Note::widened_most(input, quantity.name(), share));
         }
     }
 
@@ -260,7 +249,7 @@ impl Estimate {
     }
 }
 
-/// Propagates the errors of a point estimate and adds the warnings.
+/// Propagates the errors of a point estimate and adds the notes.
 pub(crate) fn assemble(
     model: &'static str,
     uses_gamma: bool,
@@ -269,8 +258,8 @@ pub(crate) fn assemble(
     calibration: &Calibration,
     point: PointEstimate,
     jacobian: Jacobian,
-) -> Result<Estimate, EmtError> {
-    let PointEstimate { structure, discrepancy, bounds, misfit, mut warnings, .. } = point;
+) -> Result<Inversion, EmtError> {
+    let PointEstimate { structure, discrepancy, bounds, misfit, mut notes, .. } = point;
     let inputs = observation.input_covariance(calibration.material());
     // The error of the data is not known where only errors of the state are known and the model does not use it.
     let data_covariance = inputs
@@ -292,12 +281,12 @@ pub(crate) fn assemble(
     }
     domain.validate_solid_fraction(&observation.conditions)?;
     checks::check_inferred(&structure)?;
-    warnings.extend(checks::common(observation, calibration, uses_gamma, domain));
-    warnings.extend(checks::of_structure(&structure));
-    warnings.extend(outside_domain(&structure, domain, &warnings));
-    warnings.extend(undetermined(&structure, domain));
-    let status = Status::of_estimate(&structure, &mut warnings);
-    let mut estimate = Estimate {
+    notes.extend(checks::common(observation, calibration, uses_gamma, domain));
+    notes.extend(checks::of_structure(&structure));
+    notes.extend(outside_domain(&structure, domain, &notes));
+    notes.extend(undetermined(&structure, domain));
+    by_severity(&mut notes);
+    let mut inversion = Inversion {
         model,
         calibration: calibration.name().to_owned(),
         gamma: uses_gamma.then_some(gamma),
@@ -307,38 +296,45 @@ pub(crate) fn assemble(
         model_covariance,
         prior_covariance: None,
         misfit,
-        status,
-        warnings,
+        notes,
         inputs,
         domain: *domain,
         bounds,
         limits: [[f64::NEG_INFINITY, f64::INFINITY]; InferredQuantity::COUNT],
     };
-    if observation.covariance.is_none() && estimate.covariance().is_some() {
-        estimate.warnings.push(Warning::DataErrorUnknown);
+    if observation.covariance.is_none() && inversion.covariance().is_some() {
+        inversion.notes.push(Note::data_error_unknown());
     }
-    estimate.name_widest();
-    Ok(estimate)
+    inversion.name_widest();
+    Ok(inversion)
 }
 
-/// The unknowns of the model that are outside its domain, unless another warning says so.
-fn outside_domain(structure: &Microstructure, domain: &Domain, warnings: &[Warning]) -> Vec<Warning> {
-    if warnings.iter().any(Warning::is_extrapolation) {
+fn by_severity(notes: &mut [Note]) {
+    notes.sort_by_key(|note| std::cmp::Reverse(note.severity()));
+}
+
+/// The unknowns of the model that are outside its domain, unless another note says so.
+fn outside_domain(structure: &Microstructure, domain: &Domain, notes: &[Note]) -> Vec<Note> {
+    if Status::of(notes) > Status::Ok {
         return Vec::new();
     }
     let of = |quantity: InferredQuantity| {
         let (value, range) = structure.get(quantity).zip(domain.structure[quantity as usize])?;
         let outside = !(range[0]..=range[1]).contains(&value);
-        outside.then_some(Warning::OutsideDomain { quantity, value, range })
+        outside.then(|| Note::outside_domain(quantity.name(), value, range[0], range[1]))
     };
     InferredQuantity::ALL.into_iter().filter_map(of).collect()
 }
 
-/// The unknowns of the model that are open.
-fn undetermined(structure: &Microstructure, domain: &Domain) -> Option<Warning> {
-    let quantities =
-        InferredQuantity::ALL.map(|q| structure.get(q).is_none() && domain.structure[q as usize].is_some());
-    quantities.contains(&true).then_some(Warning::Undetermined { quantities })
+/// Returns the note on the unknowns of the model that are open; without any value there is no estimate.
+fn undetermined(structure: &Microstructure, domain: &Domain) -> Option<Note> {
+    let is_open =
+        |q: &InferredQuantity| structure.get(*q).is_none() && domain.structure[*q as usize].is_some();
+    let open: Vec<_> =
+        InferredQuantity::ALL.into_iter().filter(is_open).map(InferredQuantity::name).collect();
+    let is_nothing = structure.values().iter().all(Option::is_none);
+    let severity = if is_nothing { Status::Unknown } else { Status::Ok };
+    (!open.is_empty()).then(|| Note::undetermined(open.join(", ")).raised(severity))
 }
 
 fn of_determined(

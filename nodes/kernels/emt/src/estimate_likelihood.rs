@@ -5,7 +5,7 @@
 //! the inversion. With a flat prior the posterior is the estimate.
 
 use crate::error::EmtError;
-use crate::estimate::Estimate;
+use crate::estimate::Inversion;
 use crate::likelihood::{Likelihood, Predicted, UNIT};
 use crate::moduli::{MODULI, Modulus};
 use crate::observation::Observation;
@@ -28,7 +28,7 @@ pub(crate) struct OfEstimate {
 
 impl OfEstimate {
     /// Likelihood of this estimate from these moduli.
-    pub(crate) fn new(estimate: &Estimate, observation: &Observation) -> Result<Self, EmtError> {
+    pub(crate) fn new(estimate: &Inversion, observation: &Observation) -> Result<Self, EmtError> {
         let without = |reason| EmtError::NoLikelihood { model: estimate.model, reason };
         if estimate.undetermined().next().is_some() {
             return Err(without("they do not determine all its unknowns; give more"));

@@ -6,7 +6,7 @@
 //! along it.
 //!
 //! - `moduli`, `conditions`, `probe`: what a microstructure is inferred from, at what state, and how it was measured
-//! - `observation`, `estimate`, `warning`, `error`: input and output of an inversion
+//! - `observation`, `estimate`, `note`, `error`: input and output of an inversion
 //! - `model`, `point_estimate`, `domain`: the trait of the models, their result, and their range
 //! - `registry`: the list of the models
 //! - `models`: one file per model
@@ -44,7 +44,6 @@ mod calibration;
 mod checks;
 pub mod christoffel;
 mod conditions;
-mod digits;
 mod domain;
 mod eq16;
 mod error;
@@ -69,7 +68,6 @@ mod random;
 mod registry;
 mod series;
 mod update;
-mod warning;
 mod wave_moduli;
 
 pub use calibration::{
@@ -84,7 +82,7 @@ pub use conditions::{
 pub use domain::{Domain, Fitted, Range};
 pub use eq16::Eq16Reading;
 pub use error::EmtError;
-pub use estimate::{CREDIBLE_LEVEL, Estimate, Status};
+pub use estimate::{CREDIBLE_LEVEL, Inversion};
 pub use invariants::Invariants;
 pub use likelihood::{Likelihood, Predicted};
 pub use medium::{Medium, MediumModuli};
@@ -106,5 +104,4 @@ pub use series::{
     SeriesEstimate, SeriesPrior, SeriesRow, SpeedMode, SpeedSeries, infer_series, series_stddev,
     simulate_series,
 };
-pub use warning::Warning;
 pub use wave_moduli::WaveModuli;

@@ -4,7 +4,7 @@ use crate::calibration::Calibration;
 use crate::conditions::Conditions;
 use crate::domain::Domain;
 use crate::error::EmtError;
-use crate::estimate::{Estimate, assemble};
+use crate::estimate::{Inversion, assemble};
 use crate::estimate_likelihood::OfEstimate;
 use crate::likelihood::Likelihood;
 use crate::moduli::Moduli;
@@ -53,7 +53,7 @@ pub trait Model: Sync + Debug {
     fn solve(&self, observation: &Observation, calibration: &Calibration) -> Result<PointEstimate, EmtError>;
 
     /// The structure with its uncertainty.
-    fn infer(&self, observation: &Observation, calibration: &Calibration) -> Result<Estimate, EmtError> {
+    fn infer(&self, observation: &Observation, calibration: &Calibration) -> Result<Inversion, EmtError> {
         let observation = observation.checked()?;
         self.domain(calibration).validate_contact(&observation.conditions)?;
         let mut point = self.solve(&observation, calibration)?;

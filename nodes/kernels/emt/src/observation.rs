@@ -4,6 +4,7 @@ use crate::conditions::{Conditions, Measured, STATE_INPUTS, StrainRatio};
 use crate::error::EmtError;
 use crate::moduli::{MODULI, Moduli, ModuliCovariance, Modulus};
 use crate::probe::Probe;
+use grainlab_core::notes::Note;
 use grainlab_core::results::PackingReport;
 use grainlab_core::{Mat3, Material, Stiffness};
 use nalgebra::{SMatrix, SymmetricEigen};
@@ -134,7 +135,7 @@ impl Observation {
                 return Err(EmtError::NotFinite { quantity: modulus.name(), value });
             }
             if value <= 0.0 && modulus != Modulus::C13 {
-                return Err(EmtError::Unstable { modulus: modulus.name(), value });
+                return Err(Note::unstable(modulus.name(), value).into());
             }
         }
         let is_new = |m: &Modulus| known.moduli.get(*m).is_none() && moduli.get(*m).is_some();

@@ -1,7 +1,7 @@
 //! Point estimates of a model, before errors are propagated.
 
 use crate::observation::INPUTS;
-use crate::warning::Warning;
+use grainlab_core::notes::Note;
 use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
 use nalgebra::SMatrix;
 
@@ -23,12 +23,12 @@ pub struct PointEstimate {
     pub bounds: Option<[Option<[f64; 2]>; InferredQuantity::COUNT]>,
     /// Misfit, where there are more data than unknowns.
     pub misfit: Option<Misfit>,
-    /// Warnings of this model; those common to all models are added later.
-    pub warnings: Vec<Warning>,
+    /// Notes of this model; those common to all models are added later.
+    pub notes: Vec<Note>,
 }
 
 impl PointEstimate {
-    /// A structure that fits exactly, without warnings.
+    /// A structure that fits exactly, without notes.
     pub fn exact(structure: Microstructure) -> Self {
         Self { structure, ..Self::default() }
     }

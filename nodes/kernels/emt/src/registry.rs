@@ -1,6 +1,5 @@
 //! The list of the models.
 
-use crate::estimate::Status;
 use crate::model::Model;
 use crate::models::directional::Directional;
 use crate::models::effective_medium::EffectiveMedium;
@@ -8,6 +7,7 @@ use crate::models::free_contact::{self, FreeContact};
 use crate::models::hertz_mindlin::HertzMindlin;
 use crate::models::ratio;
 use crate::models::relaxed::Relaxed;
+use grainlab_core::notes::Status;
 
 /// Every model of contacts that are known, in the order of every list of results.
 pub fn models() -> &'static [&'static dyn Model] {

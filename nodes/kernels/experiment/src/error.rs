@@ -1,29 +1,17 @@
 //! Errors of a run.
 
-use grainlab_dem::DemError;
+use grainlab_dem::gas::GasError;
+use grainlab_engine::EngineError;
 
 /// Why a run cannot start or continue.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ExperimentError {
     /// The engine failed.
     #[error(transparent)]
-    Engine(#[from] DemError),
-    /// Another engine failed.
-    #[error("{engine}: {reason}")]
-    OtherEngine {
-        /// Name of the engine.
-        engine: String,
-        /// Why, and what to do.
-        reason: String,
-    },
-    /// The program of another engine ended, or does not answer. A new one can go on from the last packing.
-    #[error("{engine}: {reason}")]
-    EngineLost {
-        /// Name of the engine.
-        engine: String,
-        /// Fault, with the last lines of the program.
-        reason: String,
-    },
+    Engine(#[from] EngineError),
+    /// The gas that a run begins with failed.
+    #[error(transparent)]
+    Gas(#[from] GasError),
     /// A servo cannot answer a request.
     #[error(transparent)]
     Servo(#[from] grainlab_servo::ServoError),
@@ -36,8 +24,13 @@ pub enum ExperimentError {
 }
 
 impl ExperimentError {
+    /// True if the program of another engine is gone, so that there is no state to save.
+    pub fn is_lost(&self) -> bool {
+        matches!(self, Self::Engine(EngineError::Lost { .. }))
+    }
+
     /// True if the run was stopped by the flag of its compute settings, and can go on.
     pub fn is_stopped(&self) -> bool {
-        matches!(self, Self::Engine(DemError::Stopped))
+        matches!(self, Self::Engine(EngineError::Stopped) | Self::Gas(GasError::Stopped))
     }
 }

@@ -1,11 +1,10 @@
 //! The gas that a run begins with: grains placed at random, and phases of hard spheres that move from collision to collision.
 
-use crate::dem_engine::Dem;
-use crate::engine::{EngineFactory, ParticleEngine};
 use crate::error::ExperimentError;
 use grainlab_core::{Mat3, Packing, SymTensor, Vec3};
-use grainlab_dem::gas::{HardSpheres, mean_free_time, random_placement};
-use grainlab_dem::{Compute, DemError};
+use grainlab_dem::Dem;
+use grainlab_dem::gas::{GasError, HardSpheres, mean_free_time, random_placement};
+use grainlab_engine::{Compute, EngineError, EngineFactory, ParticleEngine};
 use grainlab_scene::{Condition, GasMethod, Measure, Phase, PhaseKind, Scene};
 
 /// The grains of a scene, placed at random with thermal velocities.
@@ -74,11 +73,11 @@ impl EventDriven {
     ) -> Result<(Box<dyn ParticleEngine>, Mat3), ExperimentError> {
         if let Some(c) = rate.iter().position(|r| !r.is_finite()) {
             let component = SymTensor::COMPONENTS[c];
-            return Err(DemError::Rate { component, value: rate[c] }.into());
+            return Err(EngineError::Rate { component, value: rate[c] }.into());
         }
         if *rate != [rate[0], rate[0], rate[0], 0.0, 0.0, 0.0] {
             let what = format!("a strain rate of {rate:?} 1/s is not isotropic");
-            return Err(DemError::HardSpheres(what).into());
+            return Err(GasError::HardSpheres(what).into());
         }
         let old = engine.packing(Mat3::identity())?;
         let interval = self.step * f64::from(period);
@@ -96,6 +95,6 @@ impl EventDriven {
             contacts: Vec::new(),
             ..old
         };
-        Ok((Dem.start(&packing, engine.settings(), rate, compute)?, deformation))
+        Ok((Dem::default().start(&packing, engine.settings(), rate, compute)?, deformation))
     }
 }

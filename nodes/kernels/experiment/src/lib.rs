@@ -2,13 +2,10 @@
 //!
 //! - [`Simulation`]: the run
 //! - [`StepOutcome`]: the result of one strain rate
-//! - [`ParticleEngine`], [`EngineFactory`]: what a run asks of its engine; [`Dem`]: ours
 //!
 //! A packing and the run state published with it are a checkpoint: a run resumed from them continues bit for
 //! bit.
 
-mod dem_engine;
-mod engine;
 mod error;
 mod gas;
 mod phase_settings;
@@ -16,8 +13,5 @@ mod progress;
 mod run_state;
 mod simulation;
 
-pub use dem_engine::Dem;
-pub use engine::{EngineFactory, EngineProgram, Observables, ParticleEngine};
 pub use error::ExperimentError;
-pub use run_state::{PathPosition, StrainOrigin, engine_program};
 pub use simulation::{Simulation, StepOutcome};

@@ -1,6 +1,6 @@
 //! The settings of the engine in a phase.
 
-use grainlab_dem::{EngineSettings, TimeStep};
+use grainlab_engine::{EngineSettings, TimeStep};
 use grainlab_scene::{Phase, PhaseKind, Scene};
 
 /// The settings of the engine in a phase.

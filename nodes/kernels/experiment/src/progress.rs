@@ -1,8 +1,7 @@
 //! Position of a run on its path, and what was observed there.
 
-use crate::engine::Observables;
-use crate::run_state::StrainOrigin;
-use grainlab_core::{Mat3, SymTensor};
+use grainlab_core::{Mat3, StrainOrigin, SymTensor};
+use grainlab_engine::Observables;
 use grainlab_scene::{Observation, PathState, Scene};
 
 /// Everything except the engine that changes as a run advances.

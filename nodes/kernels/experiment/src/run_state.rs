@@ -1,12 +1,10 @@
 //! The part of a run's state that is not in the packing: loading path, accumulated strain, present rate. It is stored as
 //! JSON with names and a version, so that a recording is also a checkpoint.
 
-use crate::engine::EngineProgram;
 use crate::error::ExperimentError;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
-use grainlab_core::Packing;
-use grainlab_core::results::PackingReport;
+use grainlab_core::{EngineProgram, Packing, StrainOrigin};
 use grainlab_scene::Scene;
 use serde::{Deserialize, Serialize};
 
@@ -36,6 +34,7 @@ pub(crate) struct RunState {
     /// Integral over time of the largest component of the strain rate since the start of the phase.
     pub(crate) phase_strain: f64,
     /// State that the deformation of the packing counts from.
+    #[serde(with = "Origin")]
     pub(crate) strain_origin: StrainOrigin,
     /// The state is within a phase, not at the end of one.
     pub(crate) within_phase: bool,
@@ -47,6 +46,7 @@ pub(crate) struct RunState {
 /// An engine and the state that the packing cannot hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SavedEngine {
+    #[serde(with = "Program")]
     pub(crate) program: EngineProgram,
     /// Bytes of the state as base64.
     state: String,
@@ -63,9 +63,20 @@ impl SavedEngine {
     }
 }
 
-/// The engine that made a packing with this run state; `None` if it is ours, or there is no run state.
-pub fn engine_program(run_state: &[u8]) -> Option<EngineProgram> {
-    Some(RunState::decode(run_state).ok()?.engine?.program)
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "EngineProgram")]
+struct Program {
+    name: String,
+    version: String,
+    ranks: u32,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "StrainOrigin", rename_all = "snake_case")]
+enum Origin {
+    Reference,
+    FirstStep,
+    Unknown,
 }
 
 impl RunState {
@@ -90,7 +101,8 @@ impl RunState {
             Ok(Version { version }) => {
                 return resume(format!("run state version {version}, this program reads version {VERSION}"));
             }
-            Err(_) if of_version_3(bytes).is_some() => {
+            // Version 3 has 26 words, the first of which is the version.
+            Err(_) if bytes.len() == 26 * 8 && bytes.starts_with(&3u64.to_le_bytes()) => {
                 return resume(format!("run state version 3, this program reads version {VERSION}"));
             }
             Err(error) => return resume(format!("the run state is damaged: {error}")),
@@ -120,76 +132,4 @@ pub(crate) fn belongs(packing: &Packing, scene: &Scene) -> Result<(), Experiment
             "the {what} of the packing is not that of the scene; begin a scene with a changed packing by its key start"
         ))),
     }
-}
-
-/// State that the strain of a packing counts from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum StrainOrigin {
-    /// The state that a phase set as the reference.
-    Reference,
-    /// The first step of the run: no phase has set a reference.
-    FirstStep,
-    /// None: an earlier version recorded the packing before a reference was set, as not strained.
-    Unknown,
-}
-
-/// Position of a packing on the loading path of its run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PathPosition {
-    /// Number of the phase, from 1; 0 for the packing that the run started from.
-    pub phase: usize,
-    /// The phase met its end conditions at this packing. A packing within a phase, recorded on the way or saved by an
-    /// interruption, need not be at rest.
-    pub end_of_phase: bool,
-    /// State that the strain of the packing counts from.
-    pub strain_origin: StrainOrigin,
-}
-
-impl PathPosition {
-    /// The position in the run state of a packing; `None` if the packing has no run state.
-    pub fn of(run_state: &[u8]) -> Option<Self> {
-        let Ok(state) = RunState::decode(run_state) else { return of_version_3(run_state) };
-        Some(Self::new(state.phase, state.within_phase, state.strain_origin))
-    }
-
-    /// `next` is the index of the phase that the run is in.
-    fn new(next: usize, within_phase: bool, strain_origin: StrainOrigin) -> Self {
-        Self { phase: next + usize::from(within_phase), end_of_phase: !within_phase, strain_origin }
-    }
-
-    /// A warning about a packing that was recorded within a phase.
-    pub fn warning(&self) -> Option<String> {
-        let phase = self.phase;
-        (!self.end_of_phase).then(|| {
-            format!("recorded within phase {phase}, which had not met its end conditions: the packing need not be at rest")
-        })
-    }
-
-    /// Removes from the report of the packing what its strain does not tell: gamma/Delta of the strain from a state that no
-    /// phase has set as the reference, and a strain that was not counted.
-    pub fn judge_strain(&self, report: &mut PackingReport) {
-        if self.strain_origin != StrainOrigin::Reference {
-            report.strain_ratios.total = None;
-        }
-        if self.strain_origin == StrainOrigin::Unknown {
-            report.strain = None;
-        }
-    }
-}
-
-/// The position in a run state of version 3, 26 words by position, so that older recordings are still analyzed.
-fn of_version_3(bytes: &[u8]) -> Option<PathPosition> {
-    let (words, rest) = bytes.as_chunks::<8>();
-    let word = |k: usize| words.get(k).copied().map(u64::from_le_bytes);
-    if (words.len(), rest.len(), word(0)) != (26, 0, Some(3)) {
-        return None;
-    }
-    let (phase, bits) = (usize::try_from(word(3)?).ok()?, word(8)?);
-    let strain_origin = match (bits & 1 != 0, bits & 4 != 0) {
-        (true, _) => StrainOrigin::Reference,
-        (false, true) => StrainOrigin::FirstStep,
-        (false, false) => StrainOrigin::Unknown,
-    };
-    Some(PathPosition::new(phase, bits & 2 != 0, strain_origin))
 }

@@ -1,14 +1,13 @@
 //! A scene run along its loading path.
 
-use crate::dem_engine::Dem;
-use crate::engine::{EngineFactory, Observables, ParticleEngine};
 use crate::error::ExperimentError;
 use crate::gas::{EventDriven, at_random, is_event_driven};
 use crate::phase_settings::phase_settings;
 use crate::progress::{Progress, solid_fraction};
-use crate::run_state::{RunState, SavedEngine, StrainOrigin, belongs};
-use grainlab_core::{Mat3, Packing, ServoLaw, SymTensor};
-use grainlab_dem::{Compute, EnergyBalance};
+use crate::run_state::{RunState, SavedEngine, belongs};
+use grainlab_core::{Mat3, Packing, PathPosition, ServoLaw, StrainOrigin, SymTensor};
+use grainlab_dem::Dem;
+use grainlab_engine::{Compute, EnergyBalance, EngineFactory, Observables, ParticleEngine};
 use grainlab_scene::{PathState, PhaseEnded, PhaseKind, Scene, Travelled};
 use grainlab_servo::{ServoInput, ServoRequest};
 use std::sync::Arc;
@@ -46,17 +45,17 @@ pub struct StepOutcome {
 impl Simulation {
     /// The start of a scene: grains placed at random with thermal velocities.
     pub fn new(scene: Scene) -> Result<Self, ExperimentError> {
-        Self::with_engine(scene, Arc::new(Dem), None)
+        Self::with_engine(scene, Arc::new(Dem::default()), None)
     }
 
     /// The start of a scene whose path begins with this packing. Its clock and its strain are set to 0.
     pub fn from_packing(scene: Scene, packing: &Packing) -> Result<Self, ExperimentError> {
-        Self::at_start(scene, Arc::new(Dem), packing)
+        Self::at_start(scene, Arc::new(Dem::default()), packing)
     }
 
     /// Resumes from a packing and the run state that was published with it.
     pub fn resume(scene: Scene, packing: &Packing, run_state: &[u8]) -> Result<Self, ExperimentError> {
-        Self::resumed(scene, Arc::new(Dem), packing, run_state)
+        Self::resumed(scene, Arc::new(Dem::default()), packing, run_state)
     }
 
     /// A run with engines of `factory`, which take over where an event-driven gas ends: from grains at random, from a packing
@@ -64,13 +63,12 @@ impl Simulation {
     /// packing that another engine made is taken without what only that engine knows.
     ///
     /// # Errors
-    /// A scene that the engine does not have, and a state of another scene or version.
+    /// A state that the engine does not take, and one of another scene or version.
     pub fn with_engine(
         scene: Scene,
         factory: Arc<dyn EngineFactory>,
         from: Option<(&Packing, &[u8])>,
     ) -> Result<Self, ExperimentError> {
-        factory.check(&scene)?;
         match from {
             None => Self::at_random(scene, factory),
             Some((packing, [])) if scene.start.is_some() => Self::at_start(scene, factory, packing),
@@ -113,7 +111,8 @@ impl Simulation {
         let phase = scene.phases.get(phase).or(scene.phases.last());
         let phase = phase.ok_or(ExperimentError::Resume("the scene has no phases".into()))?;
         let (settings, compute) = (phase_settings(&scene, phase), Compute::default());
-        let maker: &dyn EngineFactory = if is_event_driven(phase) { &Dem } else { &*factory };
+        let (ours, is_gas) = (Dem::default(), is_event_driven(phase));
+        let maker: &dyn EngineFactory = if is_gas { &ours } else { &*factory };
         let engine = match own_state {
             Some(state) => maker.resume(start, &state, &settings, rate, &compute)?,
             None => maker.start(start, &settings, rate, &compute)?,
@@ -225,7 +224,7 @@ impl Simulation {
         self.progress.packings
     }
 
-    /// Sets instruction set and threads, on which results do not depend, and the flag that stops a computation.
+    /// Sets threads, on which results do not depend, and the flag that stops a computation.
     pub fn set_compute(&mut self, compute: Compute) {
         self.engine.set_compute(&compute);
         self.compute = compute;
@@ -434,8 +433,9 @@ impl Simulation {
     /// # Errors
     /// An engine that does not answer.
     pub fn packing(&self) -> Result<Packing, ExperimentError> {
-        let packing = self.engine.packing(self.progress.deformation)?;
-        Ok(Packing { friction: self.progress.friction, ..packing })
+        let (p, engine) = (&self.progress, self.engine.program().cloned());
+        let path = PathPosition::new(p.path.phase, p.within_phase, p.strain_origin, engine);
+        Ok(Packing { friction: p.friction, path: Some(path), ..self.engine.packing(p.deformation)? })
     }
 
     /// The part of the state that is not in the packing. [`Simulation::resume`] takes both.

@@ -3,7 +3,8 @@
 //! `cargo run --release -p grainlab_micromechanics --example crystal`
 
 use grainlab_core::{Cell, Mat3, Material, Vec3};
-use grainlab_dem::{Engine, EngineSettings};
+use grainlab_dem::Engine;
+use grainlab_engine::EngineSettings;
 use grainlab_micromechanics::{Settings, analyze};
 
 const RADIUS: f64 = 1e-4;

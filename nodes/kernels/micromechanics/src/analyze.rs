@@ -11,7 +11,7 @@ use crate::view::PackingView;
 use grainlab_core::results::{
     ElasticStiffness, Elasticity, NoStiffness, PackingReport, StiffnessBounds, StiffnessMethod, StrainRatios,
 };
-use grainlab_core::{Packing, Stiffness, Vec3, min_contacts, symmetry};
+use grainlab_core::{Packing, Stiffness, StrainOrigin, Vec3, min_contacts, symmetry};
 
 /// Grains from which the default tolerance is larger.
 const LARGE: usize = 50_000;
@@ -88,8 +88,10 @@ pub fn analyze(packing: &Packing, settings: &Settings) -> Result<Analysis, Micro
     };
     let fabric = fabric(&view, &axis);
     let contacts = contact_statistics(&view);
+    let strain_origin = packing.path.as_ref().map_or(StrainOrigin::Reference, |path| path.strain_origin);
     let strain_ratios = StrainRatios {
-        total: total_strain_ratio(packing, &axis),
+        // γ/Δ refers to the state that a phase set.
+        total: total_strain_ratio(packing, &axis).filter(|_| strain_origin == StrainOrigin::Reference),
         elastic: elasticity
             .as_deref()
             .ok()
@@ -104,7 +106,8 @@ pub fn analyze(packing: &Packing, settings: &Settings) -> Result<Analysis, Micro
         friction: packing.friction,
         solid_fraction: packing.solid_fraction(),
         size_spread: packing.size_spread(),
-        strain: packing.strain(),
+        // An earlier version recorded packings before a reference as not strained.
+        strain: packing.strain().filter(|_| strain_origin != StrainOrigin::Unknown),
         stress: view.stress,
         unbalanced_force_ratio: unbalanced_force_ratio(packing, &view.non_rattlers),
         symmetry: elasticity.as_deref().ok().and_then(|s| symmetry(&s.tensor, tolerance)),

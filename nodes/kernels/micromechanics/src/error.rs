@@ -173,7 +173,7 @@ pub enum ProbeError {
     },
     /// The engine failed.
     #[error(transparent)]
-    Engine(#[from] grainlab_dem::DemError),
+    Engine(#[from] grainlab_engine::EngineError),
 }
 
 #[cfg(test)]

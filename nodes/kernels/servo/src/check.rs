@@ -1,13 +1,9 @@
 //! Checks of an input.
 
+use crate::error::ServoError;
 use crate::input::ServoInput;
 use crate::stability::critical_gain;
 use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
-
-/// Why a request is invalid, with the value and the valid ones.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct ServoError(String);
 
 /// The first fault of an input.
 pub(crate) fn check(input: &ServoInput) -> Result<(), ServoError> {

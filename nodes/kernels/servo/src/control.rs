@@ -1,6 +1,7 @@
 //! The control of all components.
 
-use crate::check::{ServoError, check};
+use crate::check::check;
+use crate::error::ServoError;
 use crate::input::{ServoInput, ServoOutput};
 use crate::law;
 use crate::stability::closed_loop_stiffness;

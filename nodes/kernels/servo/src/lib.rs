@@ -8,13 +8,15 @@
 
 mod check;
 mod control;
+mod error;
 mod input;
 mod law;
 mod request;
 mod stability;
 
-pub use check::{ServoError, check_stability};
+pub use check::check_stability;
 pub use control::control;
+pub use error::ServoError;
 pub use input::{ServoInput, ServoOutput};
 pub use request::ServoRequest;
 pub use stability::critical_gain;

@@ -178,6 +178,24 @@ fn a_phase_without_stress_targets_does_not_need_a_valid_law() {
     assert_eq!(control(&request).unwrap().rate, [-1.0; 6]);
 }
 
+#[test]
+fn only_a_component_with_a_stress_target_is_the_servos_to_choose() {
+    let mut request = at_target(SCALED);
+    request.controls[1] = ComponentControl::Held;
+    request.controls[2] = ComponentControl::StrainRate(-0.5);
+    assert_eq!(request.allows(&[2.0, 0.0, -0.5, -1.0, 0.0, 0.1]), Ok(()));
+    for (rate, reason) in [
+        (
+            [0.0, 0.0, -0.5, -2.1, 0.0, 0.0],
+            "rate yz = -2.1 1/s is beyond the rate limit of the request, 2 1/s",
+        ),
+        ([0.0, 1e-6, -0.5, 0.0, 0.0, 0.0], "rate yy = 0.000001 1/s, where the request imposes 0 1/s"),
+        ([0.0, 0.0, 0.5, 0.0, 0.0, 0.0], "rate zz = 0.5 1/s, where the request imposes -0.5 1/s"),
+    ] {
+        assert_eq!(request.allows(&rate).unwrap_err().to_string(), reason);
+    }
+}
+
 fn component() -> impl Strategy<Value = ComponentControl> {
     prop_oneof![
         Just(ComponentControl::Held),
@@ -198,7 +216,7 @@ proptest! {
     /// `any::<f64>()` covers every normal and subnormal magnitude of both signs. Quantities that must not be
     /// negative take the magnitude, so that most requests are valid.
     #[test]
-    fn any_answer_is_finite_within_the_limit_and_the_same_twice(
+    fn any_answer_is_finite_within_the_limit_allowed_and_the_same_twice(
         stress in any::<[f64; 6]>(), rate in any::<[f64; 6]>(), tangent in any::<[f64; 6]>(),
         controls in prop::array::uniform6(component()), law in law(),
         rate_limit in any::<f64>(), control_interval in any::<f64>(),
@@ -218,6 +236,7 @@ proptest! {
         prop_assert_eq!(&first, &control(&request));
         prop_assume!(first.is_ok());
         let a = first.unwrap();
+        prop_assert_eq!(request.allows(&a.rate), Ok(()));
         for i in 0..6 {
             prop_assert!(a.rate[i].abs() <= request.rate_limit);
             prop_assert!(!a.saturated[i] || a.rate[i].abs() == request.rate_limit);

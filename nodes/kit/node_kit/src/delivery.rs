@@ -16,7 +16,7 @@ impl Delivery {
     pub const PATIENCE: Duration = Duration::from_secs(10);
 
     /// Begins to wait at `now` for the acknowledgement of `pending` messages: see
-    /// [`Bus::unacknowledged`](crate::Bus::unacknowledged).
+    /// [`DdsBus::unacknowledged`](crate::DdsBus::unacknowledged).
     pub fn begin(pending: u64, now: Duration) -> Self {
         Self { pending, progress: now }
     }

@@ -2,7 +2,8 @@
 //! ros2-client lacks.
 //!
 //! - `bus`: the [`Bus`] of a node: serialized samples in and out, and a single wait; `sample`, `demand`, `bus_error`:
-//!   its types
+//!   its types; [`Graph`]: the endpoints and processes that it knows; [`Statistics`]: its counts; `handles`:
+//!   publishers and subscriptions by number
 //! - `delivery`: whether the readers of a publisher make progress
 //! - `offer`: the topics, types and QoS that other processes publish
 //! - `typed`: typed publishers and subscriptions; `bulk`: messages too large for one sample; `source`: samples of any topic; `worker`: long
@@ -31,6 +32,8 @@ mod delivery;
 mod demand;
 mod executor;
 mod free_domain;
+mod graph;
+mod handles;
 mod housekeeping;
 mod identity;
 mod lock;
@@ -49,6 +52,7 @@ mod run;
 mod sample;
 mod services;
 mod source;
+mod statistics;
 mod tool_bus;
 mod typed;
 pub mod watchdog;
@@ -58,7 +62,7 @@ pub use admission::{Participant, Process, Stranger};
 pub use announced::{Announced, TooLarge};
 pub use args::{ArgsError, Assignment, RosArgs};
 pub use bulk::{BULK_LIMIT, BulkPublisher, BulkSubscription};
-pub use bus::{Bus, Caller, PublisherId, SubscriptionId, Wake};
+pub use bus::{Bus, Caller, Wake};
 pub use bus_error::{BusError, tolerate_full};
 pub use dds::{CROWDING_ADVICE, DdsBus, MAX_DOMAIN, Network, NetworkError, Reach, StaticPeers, crowding};
 pub use delivery::Delivery;
@@ -66,6 +70,8 @@ pub use demand::Demand;
 pub use executor::{Component, step_all};
 pub use free_domain::{FreeDomain, is_in_use, is_launched};
 pub use grainlab_msgs::{Exit, Health, Level, Published, Received, Report};
+pub use graph::Graph;
+pub use handles::{PublisherId, SubscriptionId};
 pub use housekeeping::{DriveError, HEARTBEAT};
 pub use identity::{
     Identity, MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE, RunId, Scope, may_be_ours, member_of, run_of,
@@ -85,6 +91,7 @@ pub use peers::{Liveliness, Peer, PeerWatch, SILENCE};
 pub use run::{NodeSpec, drive, run_node, use_sim_time};
 pub use sample::{Sample, SampleId, SampleInfo};
 pub use source::Source;
+pub use statistics::Statistics;
 pub use tool_bus::{bus_in, bus_named, tool_bus};
 pub use typed::{Publisher, Subscription};
 pub use worker::Worker;

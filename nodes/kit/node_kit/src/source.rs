@@ -1,9 +1,10 @@
 //! Samples of any topic, those of packings whole.
 
 use crate::bulk::BulkSubscription;
-use crate::bus::{Bus, SubscriptionId};
+use crate::bus::Bus;
 use crate::bus_error::BusError;
 use crate::demand::Demand;
+use crate::handles::SubscriptionId;
 use crate::sample::Sample;
 use grainlab_msgs::{Topic, topics};
 use std::time::Duration;

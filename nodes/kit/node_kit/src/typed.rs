@@ -1,8 +1,9 @@
 //! Typed handles over the raw bus.
 
-use crate::bus::{Bus, PublisherId, SubscriptionId};
+use crate::bus::Bus;
 use crate::bus_error::BusError;
 use crate::demand::Demand;
+use crate::handles::{PublisherId, SubscriptionId};
 use crate::sample::{SampleId, SampleInfo};
 use grainlab_msgs::{Message, Topic, from_cdr, to_cdr};
 use std::marker::PhantomData;
@@ -35,7 +36,7 @@ impl<T: Message> Publisher<T> {
         bus.publish_about(self.id, &to_cdr(message), Some(about))
     }
 
-    /// The raw handle, for [`Bus::readers`] and for bodies that are already encoded.
+    /// The raw handle, for [`Graph::readers`](crate::Graph::readers) and for bodies that are already encoded.
     pub fn id(&self) -> PublisherId {
         self.id
     }
@@ -81,7 +82,7 @@ impl<T: Message> Subscription<T> {
         Ok(None)
     }
 
-    /// The raw handle, for [`Bus::writers`] and [`Bus::count_refused`].
+    /// The raw handle, for [`Graph::writers`](crate::Graph::writers) and [`Statistics::count_refused`](crate::Statistics::count_refused).
     pub fn id(&self) -> SubscriptionId {
         self.id
     }

@@ -3,7 +3,8 @@
 use grainlab_msgs::msg::Packing;
 use grainlab_msgs::{from_cdr, to_cdr, topics};
 use grainlab_node_kit::{
-    BULK_LIMIT, BulkPublisher, BulkSubscription, Bus, BusError, DdsBus, Demand, FreeDomain, Names, Network,
+    BULK_LIMIT, BulkPublisher, BulkSubscription, Bus, BusError, DdsBus, Demand, FreeDomain, Graph, Names,
+    Network,
 };
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

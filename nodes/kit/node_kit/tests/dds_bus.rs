@@ -4,7 +4,8 @@ use grainlab_msgs::msg::{RunState, StrainRate};
 use grainlab_msgs::rcl_interfaces::Log;
 use grainlab_msgs::{Qos, Topic, topics};
 use grainlab_node_kit::{
-    Bus, BusError, DdsBus, Demand, FreeDomain, Names, Network, Publisher, Subscription, Wake,
+    Bus, BusError, DdsBus, Demand, FreeDomain, Graph, Names, Network, Publisher, Statistics, Subscription,
+    Wake,
 };
 use std::time::{Duration, Instant};
 

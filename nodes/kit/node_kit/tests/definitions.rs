@@ -2,7 +2,7 @@
 
 use grainlab_msgs::{Topic, TypeInfo, topics};
 use grainlab_node_kit::{
-    BULK_LIMIT, BulkPublisher, BulkSubscription, Bus, DdsBus, Demand, FreeDomain, Names,
+    BULK_LIMIT, BulkPublisher, BulkSubscription, Bus, DdsBus, Demand, FreeDomain, Graph, Names, Statistics,
 };
 use std::time::{Duration, Instant};
 

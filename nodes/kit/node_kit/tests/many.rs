@@ -1,7 +1,7 @@
 //! Many nodes on one host: more than the 12 ports to which announcements are sent by unicast.
 
 use grainlab_msgs::topics;
-use grainlab_node_kit::{Bus, DdsBus, Demand, FreeDomain, Names};
+use grainlab_node_kit::{Bus, DdsBus, Demand, FreeDomain, Graph, Names};
 use std::time::{Duration, Instant};
 
 const NODES: usize = 24;

@@ -4,7 +4,7 @@ use grainlab_msgs::rcl_interfaces::Log;
 use grainlab_msgs::topics;
 use grainlab_node_kit::{
     Bus, DdsBus, Demand, Exit, FreeDomain, Logger, Names, Network, Next, Node, NodeError, RosArgs,
-    Subscription, drive,
+    Statistics, Subscription, drive,
 };
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::time::{Duration, Instant};

@@ -139,9 +139,10 @@ impl RunWriter {
     }
 
     /// Continues a run: begins `<directory>/<name>_<n>.mcap`, with the next free number. Existing files are
-    /// unchanged; log times continue after theirs, and `metadata.yaml` will list all files. The file of a
-    /// recorder that was killed should be [recovered](crate::recover()) before, or other tools cannot read
-    /// the run. If nothing of the run was recorded, it begins again.
+    /// unchanged; log times continue after theirs, and `metadata.yaml` will list all files. Topics of an earlier
+    /// version have the definitions of this one in the new file. The file of a recorder that was killed should be
+    /// [recovered](crate::recover()) before, or other tools cannot read the run. If nothing of the run was
+    /// recorded, it begins again.
     ///
     /// # Errors
     /// If a file of the run is being recorded, a topic contradicts an existing one, or as
@@ -214,21 +215,22 @@ impl RunWriter {
 
     fn declare(&mut self, topic: &TopicSpec) -> Result<(), Failure> {
         if let Some(known) = self.bag.topics.get(&topic.name) {
-            if known.spec != *topic {
+            let is_own = self.topics.contains(&topic.name);
+            if known.spec != *topic && (is_own || !topic.continues(&known.spec)) {
                 return Err(Failure::failed(format!(
                     "topic {} is already recorded with another type, schema or QoS",
                     topic.name
                 )));
             }
-            if self.topics.contains(&topic.name) {
+            if is_own {
                 return Ok(());
             }
         }
         self.with("declare a topic", topic.definition.len(), |part| part.declare(topic))?;
         self.ledger.expect(&topic.name);
         self.topics.insert(topic.name.clone());
-        let new = || TopicCount { spec: topic.clone(), messages: 0 };
-        self.bag.topics.entry(topic.name.clone()).or_insert_with(new);
+        let messages = self.bag.topics.get(&topic.name).map_or(0, |known| known.messages);
+        self.bag.topics.insert(topic.name.clone(), TopicCount { spec: topic.clone(), messages });
         Ok(())
     }
 

@@ -99,7 +99,7 @@ pub fn messages(header: &Header, packing: &Packing, found: &Measurement) -> Resu
         contact_law: Some(packing.law),
         smooth: found.smooth,
         speeds: found.waves.clone(),
-        warnings: found.warnings.iter().map(ToString::to_string).collect(),
+        notes: found.notes.clone(),
     };
     let wave_speeds = wave_speeds_message(header.clone(), &reading)?;
     let traces = found.traces.iter().map(|trace| waveform(header, packing.step, trace));

@@ -1,8 +1,9 @@
 //! The lockstep: one request, its repetitions and its answer.
 
 use crate::Settings;
-use crate::question::Question;
 use grainlab_msgs::msg::StrainRate;
+use grainlab_msgs::stamp;
+use grainlab_servo::ServoRequest;
 use std::time::Duration;
 
 /// Number of consecutive invalid answers that ends a run.
@@ -14,7 +15,7 @@ pub(crate) struct Lockstep {
     resend_after: Duration,
     resend_at_most: Duration,
     /// The current request; `None` before the first one.
-    question: Option<Question>,
+    request: Option<ServoRequest>,
     body: Vec<u8>,
     /// The previous request; empty for the first one.
     previous: Vec<u8>,
@@ -62,8 +63,8 @@ impl Lockstep {
     }
 
     /// A request has been published.
-    pub(crate) fn ask(&mut self, question: Question, body: Vec<u8>, now: Duration) {
-        (self.question, self.answer) = (Some(question), None);
+    pub(crate) fn ask(&mut self, request: &ServoRequest, body: Vec<u8>, now: Duration) {
+        (self.request, self.answer) = (Some(*request), None);
         self.previous = std::mem::replace(&mut self.body, body);
         (self.asked, self.busy) = (now, Duration::ZERO);
         self.pause = self.resend_after;
@@ -78,14 +79,14 @@ impl Lockstep {
     /// Receives an answer. It is accepted if its sequence number is that of the current request, and invalid with another stamp
     /// or rates that the request does not allow.
     pub(crate) fn receive(&mut self, answer: &StrainRate) -> Result<AnswerKind, String> {
-        let asked = |q: &&Question| q.sequence == answer.sequence;
-        let Some(question) = self.question.as_ref().filter(asked) else {
+        let Some(request) = self.request.filter(|request| request.sequence == answer.sequence) else {
             self.counts.stale += 1;
             return Ok(AnswerKind::Stale);
         };
-        if question.stamp != answer.header.stamp {
+        let asked = stamp(request.time);
+        if asked != answer.header.stamp {
             let [own, of_answer] =
-                [question.stamp, answer.header.stamp].map(|t| format!("{}.{:09} s", t.sec, t.nanosec));
+                [asked, answer.header.stamp].map(|t| format!("{}.{:09} s", t.sec, t.nanosec));
             return Err(format!(
                 "its stamp is {of_answer}, that of its request {own}: an answer has the header of its request"
             ));
@@ -99,7 +100,7 @@ impl Lockstep {
             *count += 1;
             return Ok(kind);
         }
-        question.check(&answer.rate)?;
+        request.input.allows(&answer.rate).map_err(|e| e.to_string())?;
         self.answer = Some(answer.rate);
         self.refused_in_row = 0;
         Ok(AnswerKind::New)
@@ -149,6 +150,11 @@ impl Lockstep {
         now.saturating_sub(self.asked)
     }
 
+    /// True from the first request on.
+    pub(crate) fn has_asked(&self) -> bool {
+        self.request.is_some()
+    }
+
     /// The current request.
     pub(crate) fn body(&self) -> &[u8] {
         &self.body
@@ -156,33 +162,55 @@ impl Lockstep {
 
     /// Sequence number of the current request.
     pub(crate) fn sequence(&self) -> u64 {
-        self.question.map_or(0, |q| q.sequence)
+        self.request.map_or(0, |request| request.sequence)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainlab_core::ComponentControl;
-    use grainlab_msgs::builtin_interfaces::Time;
+    use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
     use grainlab_msgs::std_msgs::Header;
+    use grainlab_servo::ServoInput;
 
     const MS: Duration = Duration::from_millis(1);
 
-    fn question(sequence: u64) -> Question {
-        let target = ComponentControl::Stress(1e3);
-        let stamp = Time { sec: 1, nanosec: sequence as u32 };
-        Question { sequence, stamp, controls: [target; 6], rate_limit: 100.0 }
+    fn request(sequence: u64) -> ServoRequest {
+        ServoRequest {
+            sequence,
+            step: 0,
+            phase: 1,
+            time: time(sequence),
+            input: ServoInput {
+                stress: SymTensor::default(),
+                controls: [ComponentControl::Stress(1e3); 6],
+                rate: [0.0; 6],
+                rate_limit: 100.0,
+                law: ServoLaw::Scaled { response_time: 1.0 },
+                tangent: None,
+                control_interval: 1e-6,
+            },
+            asymmetry: 0.0,
+            strain: SymTensor::default(),
+            solid_fraction: 0.6,
+            coordination: 6.0,
+            unbalanced: 0.0,
+        }
+    }
+
+    /// The simulated time of a request, s.
+    fn time(sequence: u64) -> f64 {
+        1e-9 * sequence as f64
     }
 
     fn lockstep() -> Lockstep {
         let mut lockstep = Lockstep::new(&Settings::default());
-        lockstep.ask(question(7), vec![7], Duration::ZERO);
+        lockstep.ask(&request(7), vec![7], Duration::ZERO);
         lockstep
     }
 
-    fn answer(sequence: u64, nanosec: u32) -> StrainRate {
-        let header = Header { stamp: Time { sec: 1, nanosec }, ..Header::default() };
+    fn answer(sequence: u64, asked: u64) -> StrainRate {
+        let header = Header { stamp: stamp(time(asked)), ..Header::default() };
         StrainRate { header, sequence, rate: [sequence as f64; 6], saturated: [false; 6] }
     }
 
@@ -203,8 +231,8 @@ mod tests {
     #[test]
     fn an_answer_received_before_the_first_request_is_ignored() {
         let mut lockstep = Lockstep::new(&Settings::default());
-        assert_eq!(lockstep.receive(&StrainRate::default()), Ok(AnswerKind::Stale));
-        lockstep.ask(Question { stamp: Time::default(), ..question(0) }, vec![0], MS);
+        assert_eq!(lockstep.receive(&answer(0, 0)), Ok(AnswerKind::Stale));
+        lockstep.ask(&request(0), vec![0], MS);
         assert_eq!(lockstep.pass(MS), None);
     }
 
@@ -242,9 +270,9 @@ mod tests {
         let mut lockstep = lockstep();
         assert!((1..REFUSALS_ALLOWED).all(|_| !lockstep.refuse(MS)));
         assert_eq!(lockstep.resend(MS), Some([&[][..], &[7]]), "a refused answer is asked for again at once");
-        lockstep.ask(question(8), vec![8], MS);
+        lockstep.ask(&request(8), vec![8], MS);
         assert_eq!(lockstep.resend(100 * MS), Some([&[7][..], &[8]]), "with the request before it");
-        lockstep.ask(question(9), vec![9], MS);
+        lockstep.ask(&request(9), vec![9], MS);
         assert_eq!(lockstep.receive(&answer(9, 9)), Ok(AnswerKind::New));
         assert!((1..REFUSALS_ALLOWED).all(|_| !lockstep.refuse(MS)));
         assert!(lockstep.refuse(MS));

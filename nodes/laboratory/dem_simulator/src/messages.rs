@@ -1,6 +1,6 @@
 //! The messages of a run. All their times are simulated time.
 
-use grainlab_dem::{DemError, EnergyBalance};
+use grainlab_engine::{EnergyBalance, EngineError};
 use grainlab_experiment::{ExperimentError, Simulation};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::geometry_msgs::{Quaternion, Transform, TransformStamped};
@@ -17,7 +17,7 @@ fn number(index: usize) -> u32 {
 const FRAME: &str = "cell";
 
 pub(crate) fn packing(run: &Simulation) -> Result<msg::Packing, ExperimentError> {
-    let packing = run.packing()?.validated().map_err(DemError::Packing)?;
+    let packing = run.packing()?.validated().map_err(EngineError::from)?;
     Ok(packing_message(&packing, &run.scene().name, run.run_state()?))
 }
 

@@ -1,11 +1,12 @@
 //! The parameters of the node.
 
 use grainlab_core::Packing;
-use grainlab_dem::{Compute, ComputeError, Simd};
-use grainlab_experiment::{Dem, EngineFactory, engine_program};
+use grainlab_dem::{Dem, Engine, Simd};
+use grainlab_engine::{Compute, EngineFactory, ThreadsError};
 use grainlab_lammps::Lammps;
 use grainlab_msgs::{Topic, topics};
-use grainlab_node_kit::{ParameterSpec, Parameters, Range, parameters};
+use grainlab_node_kit::{NodeError, ParameterSpec, Parameters, Range, parameters};
+use grainlab_scene::Scene;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::time::Duration;
@@ -96,36 +97,38 @@ impl Settings {
     /// The engine of a run from the beginning, or from a packing with its run state.
     pub(crate) fn engine_for(
         &self,
+        scene: &Scene,
         from: Option<(&Packing, &[u8])>,
-    ) -> Result<Arc<dyn EngineFactory>, String> {
-        let made_by = from.and_then(|(_, run_state)| engine_program(run_state));
-        let recorded = made_by.as_ref().map_or(OURS, |program| program.name.as_str());
+    ) -> Result<Arc<dyn EngineFactory>, NodeError> {
+        let simd = self.simd.unwrap_or_else(Simd::best).if_available().map_err(NodeError::failed)?;
+        let resumed = from.filter(|(_, run_state)| !run_state.is_empty()).map(|(packing, _)| packing);
+        let made_by = resumed.and_then(|packing| packing.path.as_ref()?.engine.as_ref());
+        let recorded = made_by.map_or(OURS, |program| program.name.as_str());
         let wanted = if self.engine.is_empty() { recorded } else { &self.engine };
-        let is_new = from.is_none_or(|(_, run_state)| run_state.is_empty());
         // A gas is ours under any engine.
-        let is_changed = |(packing, run_state): (&Packing, &[u8])| {
-            !run_state.is_empty() && wanted != recorded && !packing.contacts.is_empty()
-        };
-        if from.is_some_and(is_changed) {
+        if resumed.is_some_and(|packing| wanted != recorded && !packing.contacts.is_empty()) {
             log::warn!("the run continues with the engine {wanted}; its last packing was made by {recorded}");
         }
         match wanted {
             // A run that continues with another engine keeps its arguments.
-            OURS if is_new && self.lammps.command != LAMMPS_COMMAND => {
-                Err("engine_command is given, and the engine is grainlab: name that of the command (--engine lammps)".into())
-            }
-            OURS => Ok(Arc::new(Dem)),
-            grainlab_lammps::NAME => Ok(Arc::new(self.lammps.clone())),
-            other => Err(format!(
-                "the recording was made with the engine {other:?}, which this version does not have"
+            OURS if resumed.is_none() && self.lammps.command != LAMMPS_COMMAND => Err(NodeError::usage(
+                "engine_command is given, and the engine is grainlab: name that of the command (--engine lammps)",
             )),
+            OURS => Ok(Arc::new(Dem { simd })),
+            grainlab_lammps::NAME => {
+                self.lammps.check(scene).map_err(NodeError::usage)?;
+                Ok(Arc::new(self.lammps.clone()))
+            }
+            other => Err(NodeError::usage(format!(
+                "the recording was made with the engine {other:?}, which this version does not have"
+            ))),
         }
     }
 
-    pub(crate) fn compute(&self, grains: usize) -> Result<Compute, ComputeError> {
+    pub(crate) fn compute(&self, grains: usize) -> Result<Compute, ThreadsError> {
         let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-        let threads = self.threads.map_or(Compute::useful_threads(grains, cores), NonZeroUsize::get);
-        Compute::new(self.simd.unwrap_or_else(Simd::best), threads)
+        let threads = self.threads.map_or(Engine::useful_threads(grains, cores), NonZeroUsize::get);
+        Compute::new(threads)
     }
 }
 

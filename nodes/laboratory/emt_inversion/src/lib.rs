@@ -5,7 +5,6 @@
 //!   of one message
 //! - [`EmtInversion`]: the node
 
-mod estimate;
 mod message;
 mod moduli;
 mod node;

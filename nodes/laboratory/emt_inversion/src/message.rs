@@ -1,14 +1,14 @@
 //! From one message of data to one `Microstructure`.
 
-use crate::estimate::{estimate_message, unknown};
 use crate::moduli::{of_moduli, of_report};
 use crate::observed::{Observed, Unobservable};
 use crate::settings::Settings;
 use crate::speeds::of_speeds;
 use grainlab_core::contact::SpringLaw;
-use grainlab_core::results::PackingReport;
-use grainlab_emt::{Model, StrainRatio};
-use grainlab_msgs::boundary::{BoundaryError, ModuliReading, WaveSpeedsReading};
+use grainlab_core::notes::{Code, Note, Status};
+use grainlab_core::results::{Estimate, GammaUsed, PackingReport};
+use grainlab_emt::{Inversion, Model, StrainRatio};
+use grainlab_msgs::boundary::{BoundaryError, ModuliReading, WaveSpeedsReading, estimate_message};
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{Topic, msg, topics};
 
@@ -74,28 +74,26 @@ fn answer(
     let estimates = settings.models.iter().copied().filter(applies).map(|model| {
         let own = || model.default_calibration();
         let calibration = settings.calibration.as_ref().unwrap_or_else(own);
-        let without = |gamma: StrainRatio, reasons: Vec<String>| {
-            unknown(model.name(), calibration.name(), model.uses_gamma().then_some(gamma), reasons)
+        let without = |gamma: StrainRatio, reason: Note| Estimate {
+            gamma: model.uses_gamma().then(|| GammaUsed { value: gamma.value, source: gamma.source.name() }),
+            ..Estimate::unknown(model.name(), calibration.name(), vec![reason])
         };
         let observed = match &observed {
             Ok(observed) => observed,
-            Err(nothing) => return without(StrainRatio::ZERO, vec![nothing.to_string()]),
+            Err(nothing) => {
+                return estimate_message(&without(StrainRatio::ZERO, Note::no_answer(nothing.to_string())));
+            }
         };
-        match model.infer(&observed.observation, calibration) {
-            Ok(estimate) => {
-                let mut message = estimate_message(&estimate, observed);
-                let is_of_others = is_free && *model != *grainlab_emt::free_contact();
-                if is_of_others && message.status == msg::Estimate::STATUS_OK {
-                    // Hertz–Mindlin contacts are an assumption here.
-                    message.status = msg::Estimate::STATUS_EXTRAPOLATED;
-                }
-                message
-            }
-            Err(error) => {
-                let reasons = std::iter::once(error.to_string()).chain(observed.notes.iter().cloned());
-                without(observed.observation.conditions.gamma, reasons.collect())
-            }
+        let mut estimate = match model.infer(&observed.observation, calibration) {
+            Ok(inversion) => of_data_and_model(&inversion, observed),
+            Err(error) => without(observed.observation.conditions.gamma, Note::from(&error)),
+        };
+        estimate.add_notes(&observed.notes);
+        if is_free && *model != *grainlab_emt::free_contact() {
+            // Hertz–Mindlin contacts are an assumption that the data do not test.
+            estimate.raise(Code::ContactLawAssumed, Status::Extrapolated);
         }
+        estimate_message(&estimate)
     });
     let message = msg::Microstructure {
         header: header.clone(),
@@ -107,4 +105,15 @@ fn answer(
         estimates: estimates.collect(),
     };
     Answer { message, refused }
+}
+
+/// Returns the estimate of a model. The misfit of the data about the moduli and that of the moduli about the structure add up.
+fn of_data_and_model(inversion: &Inversion, observed: &Observed) -> Estimate {
+    let misfits = [observed.misfit, inversion.misfit].into_iter().flatten();
+    let misfits: Vec<_> = misfits.filter(|misfit| misfit.degrees_of_freedom > 0).collect();
+    Estimate {
+        chi_square: Some(misfits.iter().fold(0.0, |sum, misfit| sum + misfit.chi_square)),
+        degrees_of_freedom: Some(misfits.iter().map(|misfit| misfit.degrees_of_freedom).sum()),
+        ..inversion.estimate()
+    }
 }

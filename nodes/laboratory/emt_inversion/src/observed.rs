@@ -1,5 +1,6 @@
 //! The input of the models, from a packing, moduli or wave speeds.
 
+use grainlab_core::notes::Note;
 use grainlab_emt::christoffel::{AxisError, ChristoffelError};
 use grainlab_emt::{Misfit, Modulus, Observation};
 use grainlab_msgs::boundary::BoundaryError;
@@ -10,10 +11,8 @@ pub(crate) struct Observed {
     pub(crate) observation: Observation,
     /// Misfit of the data about the moduli; `None` without degrees of freedom.
     pub(crate) misfit: Option<Misfit>,
-    /// True if the misfit exceeds the errors of the data.
-    pub(crate) in_conflict: bool,
     /// Notes, added to every estimate.
-    pub(crate) notes: Vec<String>,
+    pub(crate) notes: Vec<Note>,
 }
 
 /// Why data have no moduli about the axis set.
@@ -50,7 +49,7 @@ pub(crate) enum Unobservable {
 /// The moduli, unchanged.
 impl From<Observation> for Observed {
     fn from(observation: Observation) -> Self {
-        Self { observation, misfit: None, in_conflict: false, notes: Vec::new() }
+        Self { observation, misfit: None, notes: Vec::new() }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::observed::{Observed, Unobservable, with_error};
 use crate::settings::{Axis, Settings};
+use grainlab_core::notes::Note;
 use grainlab_core::{Material, Vec3, WaveSpeed};
 use grainlab_emt::christoffel::{self, AxisError, SpeedFit};
 use grainlab_emt::{Conditions, Measured, Misfit, Modulus, Observation, StrainRatio};
@@ -20,7 +21,11 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
         Axis::Given(axis) => axis,
         Axis::Found => match reading.axis {
             Some(axis) => axis,
-            None => found(&speeds, &mut notes)?,
+            None => {
+                let (axis, note) = found(&speeds)?;
+                notes.push(note);
+                axis
+            }
         },
     };
     let along_stated = axis.cross(&reading.axis.unwrap_or_else(Vec3::z)).norm() < APART;
@@ -48,49 +53,43 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
     };
     let grains = reading.grains.map(f64::from);
     let fitted = christoffel::moduli_of_sample(&speeds, density, Some(axis), conditions, grains)?;
-    notes.extend(notes_on(&fitted, speeds.len(), reading.axis, &axis));
-    notes.extend(reading.warnings.iter().map(|warning| format!("the instrument reports: {warning}")));
-    let other = other_axis(&fitted, &speeds, density, &axis);
-    let in_conflict = fitted.conflict.is_some() || other.is_some();
-    notes.extend(other);
+    notes.extend(notes_on_fit(&fitted, speeds.len(), |at| format!("speeds[{at}]")));
+    if let Some(named) = reading.axis.filter(|named| named.cross(&axis).norm() > APART) {
+        notes.push(Note::axis_differs(axis.x, axis.y, axis.z, named.x, named.y, named.z));
+    }
+    notes.extend(reading.notes.iter().map(|note| Note::instrument_reports(note.to_string())));
+    notes.extend(other_axis(&fitted, &speeds, density, &axis));
     let freedom = fitted.degrees_of_freedom;
     let misfit = fitted.chi_square.map(|chi_square| Misfit { chi_square, degrees_of_freedom: freedom });
     let observation = match fitted.observation.covariance {
         Some(_) => fitted.observation,
         None => {
-            let error = 100.0 * settings.modulus_error;
-            notes.push(format!("no wave speed has a standard deviation: every modulus has one of {error} %"));
+            notes.push(Note::speed_errors_unknown(settings.modulus_error));
             with_error(fitted.observation, settings.modulus_error)
         }
     };
     let observation = Observation { grains: reading.grains, ..observation };
-    Ok(Observed { observation, misfit: misfit.filter(|m| m.degrees_of_freedom > 0), in_conflict, notes })
+    Ok(Observed { observation, misfit, notes })
 }
 
-/// The axis inferred from the speeds, and a note on it. A medium that looks isotropic gets e3.
-fn found(speeds: &[WaveSpeed], notes: &mut Vec<String>) -> Result<Vec3, Unobservable> {
-    let (axis, note) = match christoffel::find_axis(speeds) {
+/// Returns the axis inferred from the speeds, with a note on it. A medium that looks isotropic gets e3.
+fn found(speeds: &[WaveSpeed]) -> Result<(Vec3, Note), Unobservable> {
+    match christoffel::find_axis(speeds) {
         Ok(found) => {
-            let (axis, degrees, sigma) = (found.axis, found.stddev().to_degrees(), found.sigma);
-            let note = format!(
-                "no axis was named: ({:.4}, {:.4}, {:.4}) was found from the speeds, to {degrees:.1} degrees (one sigma), \
-                 preferred to isotropy by {sigma:.1} sigma",
-                axis.x, axis.y, axis.z
-            );
-            (axis, note)
+            let axis = found.axis;
+            let degrees = found.stddev().to_degrees();
+            Ok((axis, Note::axis_found(axis.x, axis.y, axis.z, degrees, found.sigma)))
         }
         Err(isotropic @ AxisError::Isotropic { .. }) => {
-            (Vec3::z(), format!("no axis was named, and e3 was taken: {isotropic}"))
+            Ok((Vec3::z(), Note::axis_taken(isotropic.to_string())))
         }
-        Err(error) => return Err(error.into()),
-    };
-    notes.push(note);
-    Ok(axis)
+        Err(error) => Err(error.into()),
+    }
 }
 
-/// A note on another axis about which speeds that depart from a medium scatter less than half as much: the
-/// departure is then due to the axis used, not to the sample.
-fn other_axis(fitted: &SpeedFit, speeds: &[WaveSpeed], density: Measured, taken: &Vec3) -> Option<String> {
+/// Returns a note on another axis about which speeds that depart from a medium scatter less than half as much: the departure is
+/// then due to the axis used, not to the sample.
+fn other_axis(fitted: &SpeedFit, speeds: &[WaveSpeed], density: Measured, taken: &Vec3) -> Option<Note> {
     fitted.anisotropy_scatter?;
     let found = christoffel::find_axis(speeds).ok()?;
     let axis = found.axis;
@@ -100,54 +99,24 @@ fn other_axis(fitted: &SpeedFit, speeds: &[WaveSpeed], density: Measured, taken:
     let about =
         christoffel::moduli_from_speeds(speeds, density, Some(axis), fitted.observation.conditions).ok()?;
     let (before, after) = (2.0 * fitted.scatter()?, 2.0 * about.scatter()?);
-    (after < 0.5 * before).then(|| {
-        format!(
-            "the wave speeds fit another axis better: about ({:.4}, {:.4}, {:.4}) rho v^2 scatters by {:.2} %, about the one \
-             taken by {:.2} %; set the parameter axis",
-            axis.x, axis.y, axis.z, 100.0 * after, 100.0 * before
+    (after < 0.5 * before).then(|| Note::other_axis_fits(axis.x, axis.y, axis.z, after, before))
+}
+
+/// Returns notes on the moduli that were fitted to `speeds` speeds; `name` names each speed.
+pub fn notes_on_fit(fitted: &SpeedFit, speeds: usize, name: impl Fn(usize) -> String) -> Vec<Note> {
+    let departs = fitted.anisotropy_scatter.map(Note::speeds_depart);
+    let contradicts = fitted.conflict.as_ref().map(|conflict| {
+        let chi_square = fitted.chi_square.unwrap_or_default();
+        Note::speeds_contradict(
+            name(conflict.worst),
+            chi_square,
+            fitted.degrees_of_freedom as f64,
+            conflict.sigma,
         )
-    })
-}
-
-/// Notes on the moduli that were fitted to `speeds` speeds; `name` names each speed.
-pub fn notes_on_fit(fitted: &SpeedFit, speeds: usize, name: impl Fn(usize) -> String) -> Vec<String> {
-    let mut notes = Vec::new();
-    if let Some(departure) = fitted.anisotropy_scatter {
-        notes.push(format!(
-            "rho v^2 of the wave speeds scatters by {:.1} % about a medium isotropic about the axis, more than their errors \
-             do: the sample is not quite one, and {:.2} % were added to the error of every speed",
-            100.0 * departure, 50.0 * departure
-        ));
-    }
-    if let Some(conflict) = &fitted.conflict {
-        let (worst, sigma) = (name(conflict.worst), conflict.sigma);
-        let (chi_square, freedom) = (fitted.chi_square.unwrap_or_default(), fitted.degrees_of_freedom);
-        notes.push(format!(
-            "the wave speeds contradict each other: chi-square {chi_square:.1} for {freedom} degrees of freedom, {worst} \
-             is {sigma:.1} sigma from the prediction by the others"
-        ));
-    }
-    if !fitted.undetermined.is_empty() {
-        let open: Vec<&str> = fitted.undetermined.iter().map(|m: &Modulus| m.name()).collect();
-        notes.push(format!("the wave speeds do not determine {}", open.join(", ")));
-    }
-    if fitted.assumed > 0 {
-        notes.push(format!(
-            "{} of {speeds} wave speeds have no standard deviation: the largest relative one of the others was taken",
-            fitted.assumed
-        ));
-    }
-    notes
-}
-
-fn notes_on(fitted: &SpeedFit, speeds: usize, named: Option<Vec3>, taken: &Vec3) -> Vec<String> {
-    let mut notes = notes_on_fit(fitted, speeds, |at| format!("speeds[{at}]"));
-    if let Some(named) = named.filter(|n| n.cross(taken).norm() > APART) {
-        notes.push(format!(
-            "the axis taken is ({:.3}, {:.3}, {:.3}), and the data name ({:.3}, {:.3}, {:.3}): set the parameter axis to \
-             found if theirs is meant",
-            taken.x, taken.y, taken.z, named.x, named.y, named.z
-        ));
-    }
-    notes
+    });
+    let open: Vec<&str> = fitted.undetermined.iter().map(|m: &Modulus| m.name()).collect();
+    let open = (!open.is_empty()).then(|| Note::speeds_leave_open(open.join(", ")));
+    let taken = fitted.assumed > 0;
+    let taken = taken.then(|| Note::speed_errors_taken(fitted.assumed as f64, speeds as f64));
+    departs.into_iter().chain(contradicts).chain(open).chain(taken).collect()
 }

@@ -3,7 +3,6 @@
 use crate::Settings;
 use grainlab_core::Packing;
 use grainlab_core::results::PackingReport;
-use grainlab_experiment::PathPosition;
 use grainlab_micromechanics::{MicroError, analyze};
 use grainlab_msgs::boundary::{BoundaryError, packing_report_message};
 use grainlab_msgs::{DecodeError, msg};
@@ -50,9 +49,7 @@ pub enum MeasureError {
 pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, MeasureError> {
     let packing = Packing::try_from(message).map_err(MeasureError::Refused)?;
     let step = packing.step;
-    let mut found =
-        analyze(&packing, &settings.0).map_err(|reason| MeasureError::Analysis { step, reason })?;
-    PathPosition::of(&message.run_state).inspect(|position| position.judge_strain(&mut found.report));
+    let found = analyze(&packing, &settings.0).map_err(|reason| MeasureError::Analysis { step, reason })?;
     let why_no_stiffness = found.why_no_stiffness();
     let message = packing_report_message(message.header.clone(), &found.report)
         .map_err(|reason| MeasureError::Result { step, reason })?;

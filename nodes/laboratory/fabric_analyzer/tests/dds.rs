@@ -8,8 +8,8 @@ use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Packing, PackingReport};
 use grainlab_msgs::topics;
 use grainlab_node_kit::{
-    BulkPublisher, Bus, BusError, DdsBus, Demand, Exit, FreeDomain, Names, NodeError, Report, Subscription,
-    drive,
+    BulkPublisher, Bus, BusError, DdsBus, Demand, Exit, FreeDomain, Graph, Names, NodeError, Report,
+    Subscription, drive,
 };
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

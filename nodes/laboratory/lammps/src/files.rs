@@ -4,8 +4,7 @@ use crate::coulomb::Coulomb;
 use crate::frame::Frame;
 use crate::refusal::refused;
 use grainlab_core::{Contact, OVERLAP_LIMIT, Packing, Vec3, effective_radius};
-use grainlab_dem::DemError;
-use grainlab_experiment::ExperimentError;
+use grainlab_engine::EngineError;
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
@@ -52,7 +51,7 @@ pub(crate) struct Dumps<'a> {
 
 impl Dumps<'_> {
     /// The packing with the present positions, velocities and contacts in place of those of `known`.
-    pub(crate) fn read(&self, known: &Packing) -> Result<Packing, ExperimentError> {
+    pub(crate) fn read(&self, known: &Packing) -> Result<Packing, EngineError> {
         let n = known.grains();
         let mut packing = Packing { contacts: Vec::new(), ..known.clone() };
         let half = 0.5 * known.time_step;
@@ -87,7 +86,7 @@ impl Dumps<'_> {
         contacts.sort_by_key(|c: &Contact| (c.i, c.j, c.image));
         if let Some(c) = contacts.iter().find(|c| packing.overlap_ratio(c) > OVERLAP_LIMIT) {
             let [first, second] = [c.i, c.j].map(|g| packing.ids[g as usize]);
-            return Err(DemError::Overlap { step: packing.step, first, second, overlap: c.overlap }.into());
+            return Err(EngineError::Overlap { step: packing.step, first, second, overlap: c.overlap });
         }
         packing.contacts = self.coulomb.limited(&packing, contacts);
         Ok(packing)
@@ -123,7 +122,7 @@ fn index(number: f64, grains: usize) -> Option<usize> {
 }
 
 /// Reads the rows of a dump; `take` returns false for one that is invalid.
-fn rows<const N: usize>(path: &Path, mut take: impl FnMut(&[f64; N]) -> bool) -> Result<(), ExperimentError> {
+fn rows<const N: usize>(path: &Path, mut take: impl FnMut(&[f64; N]) -> bool) -> Result<(), EngineError> {
     let failed = |e: std::io::Error| refused::<()>(format!("{}: {e}", path.display())).unwrap_err();
     let mut file = BufReader::new(std::fs::File::open(path).map_err(failed)?);
     let (mut line, mut is_row) = (String::new(), false);

@@ -1,7 +1,7 @@
 //! A folder for the files that LAMMPS reads and writes.
 
 use crate::refusal::refused;
-use grainlab_experiment::ExperimentError;
+use grainlab_engine::EngineError;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 pub(crate) struct Folder(PathBuf);
 
 impl Folder {
-    pub(crate) fn new() -> Result<Self, ExperimentError> {
+    pub(crate) fn new() -> Result<Self, EngineError> {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let parent = std::env::temp_dir();
@@ -38,7 +38,7 @@ impl Folder {
         self.0.join(name)
     }
 
-    pub(crate) fn write(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, ExperimentError> {
+    pub(crate) fn write(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, EngineError> {
         let path = self.file(name);
         match std::fs::write(&path, bytes) {
             Ok(()) => Ok(path),

@@ -3,8 +3,7 @@
 use crate::refusal::refused;
 use grainlab_core::Material;
 use grainlab_core::contact::{ContactLaw, SpringLaw, TangentialLaw};
-use grainlab_dem::EngineSettings;
-use grainlab_experiment::ExperimentError;
+use grainlab_engine::{EngineError, EngineSettings};
 use grainlab_scene::{GasMethod, PhaseKind, Scene};
 use std::f64::consts::PI;
 
@@ -15,7 +14,7 @@ pub(crate) const MOST_FRICTION: f64 = 1e4;
 ///
 /// # Errors
 /// The part, by its key or its phase.
-pub fn check_scene(scene: &Scene) -> Result<(), ExperimentError> {
+pub fn check_scene(scene: &Scene) -> Result<(), EngineError> {
     check_law(&scene.law)?;
     if scene.numerics.energy_balance {
         return refused("numerics.energy_balance: LAMMPS has no balance of the energy of contacts");
@@ -36,7 +35,7 @@ pub fn check_scene(scene: &Scene) -> Result<(), ExperimentError> {
 }
 
 /// Refuses a contact law other than Hertz and Mindlin.
-pub(crate) fn check_law(law: &ContactLaw) -> Result<(), ExperimentError> {
+pub(crate) fn check_law(law: &ContactLaw) -> Result<(), EngineError> {
     if law.rolling.is_some() {
         return refused(
             "resistance to rolling: its force is not that of LAMMPS; only hertz_mindlin without it",
@@ -49,7 +48,7 @@ pub(crate) fn check_law(law: &ContactLaw) -> Result<(), ExperimentError> {
 }
 
 /// Refuses settings that LAMMPS does not have.
-pub(crate) fn check_settings(settings: &EngineSettings) -> Result<(), ExperimentError> {
+pub(crate) fn check_settings(settings: &EngineSettings) -> Result<(), EngineError> {
     let EngineSettings { friction, damping, drag, spin_drag, skin, .. } = *settings;
     for (name, value) in [("drag", drag), ("spin_drag", spin_drag), ("skin", skin)] {
         if !(value >= 0.0 && value.is_finite()) {
@@ -62,7 +61,7 @@ pub(crate) fn check_settings(settings: &EngineSettings) -> Result<(), Experiment
     check("", friction, damping)
 }
 
-fn check(place: &str, friction: f64, damping: f64) -> Result<(), ExperimentError> {
+fn check(place: &str, friction: f64, damping: f64) -> Result<(), EngineError> {
     if !(0.0..=MOST_FRICTION).contains(&friction) {
         return refused(format!("{place}friction {friction}: 0 to 10000; without sliding, take 10000"));
     }
@@ -73,7 +72,7 @@ fn check(place: &str, friction: f64, damping: f64) -> Result<(), ExperimentError
 ///
 /// `coeff_restitution` has c = √5 s √(m F/δ) with s = −ln e/√(π² + ln² e), and F/δ = (2/3) k_n of Hertz; ours is
 /// c = 2 ζ √(m k_n). So s = 2 ζ √(3/10).
-fn restitution(place: &str, damping: f64) -> Result<f64, ExperimentError> {
+fn restitution(place: &str, damping: f64) -> Result<f64, EngineError> {
     let s = 2.0 * damping * 0.3f64.sqrt();
     if !(0.0..0.999).contains(&s) {
         return refused(format!("{place}damping {damping}: 0 to 0.911, where the restitution falls to 0"));
@@ -82,7 +81,7 @@ fn restitution(place: &str, damping: f64) -> Result<f64, ExperimentError> {
 }
 
 /// The arguments of `pair_coeff` for one material.
-pub(crate) fn pair_coeff(material: &Material, settings: &EngineSettings) -> Result<String, ExperimentError> {
+pub(crate) fn pair_coeff(material: &Material, settings: &EngineSettings) -> Result<String, EngineError> {
     let young = 2.0 * material.shear_modulus * (1.0 + material.poisson_ratio);
     let restitution = restitution("", settings.damping)?;
     let dashpot_ratio = material.stiffness_ratio().sqrt();

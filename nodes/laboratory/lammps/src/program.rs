@@ -2,7 +2,8 @@
 
 use crate::folder::Folder;
 use crate::refusal::refused;
-use grainlab_experiment::{EngineProgram, ExperimentError};
+use grainlab_core::EngineProgram;
+use grainlab_engine::EngineError;
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::process::CommandExt;
@@ -48,7 +49,7 @@ impl Program {
         command: &str,
         limit: Duration,
         folder: &Folder,
-    ) -> Result<(Self, EngineProgram), ExperimentError> {
+    ) -> Result<(Self, EngineProgram), EngineError> {
         if command.trim().is_empty() {
             return refused("engine_command is empty; it names the program, as in 'mpiexec -n 4 lmp'");
         }
@@ -88,7 +89,7 @@ impl Program {
     }
 
     /// Version and number of processes.
-    fn about(&mut self) -> Result<EngineProgram, ExperimentError> {
+    fn about(&mut self) -> Result<EngineProgram, EngineError> {
         self.tell(&format!("{NEEDS}info communication\n"))?;
         let mut ranks = None;
         let version = self.answer("$(version)", |line| {
@@ -103,7 +104,7 @@ impl Program {
     }
 
     /// Sends commands. Their errors are found by the next [`Program::ask`].
-    pub(crate) fn tell(&mut self, commands: &str) -> Result<(), ExperimentError> {
+    pub(crate) fn tell(&mut self, commands: &str) -> Result<(), EngineError> {
         let sent = self.input.as_mut().map(|input| input.write_all(commands.as_bytes()));
         match sent {
             Some(Ok(())) => Ok(()),
@@ -113,7 +114,7 @@ impl Program {
     }
 
     /// The values of these variables (`$(lx)`, `$(c_p[1])`) once all commands sent are done; without variables, a wait for that.
-    pub(crate) fn ask<const N: usize>(&mut self, variables: [&str; N]) -> Result<[f64; N], ExperimentError> {
+    pub(crate) fn ask<const N: usize>(&mut self, variables: [&str; N]) -> Result<[f64; N], EngineError> {
         let words = variables.map(|v| format!("$({v}:%.17g)")).join(" ");
         let words = self.answer(&words, |_| {})?;
         let numbers: Vec<f64> = words.iter().map(|word| word.parse().unwrap_or(f64::NAN)).collect();
@@ -123,7 +124,7 @@ impl Program {
         Ok(numbers)
     }
 
-    fn answer(&mut self, text: &str, mut see: impl FnMut(&str)) -> Result<Vec<String>, ExperimentError> {
+    fn answer(&mut self, text: &str, mut see: impl FnMut(&str)) -> Result<Vec<String>, EngineError> {
         self.questions += 1;
         let mark = format!("@{}:", self.questions);
         let question = format!("print \"{mark} {text}\"\n");
@@ -178,7 +179,7 @@ impl Program {
     }
 
     /// The error, with the last lines of output.
-    fn failed<T>(&self, what: &str) -> Result<T, ExperimentError> {
+    fn failed<T>(&self, what: &str) -> Result<T, EngineError> {
         let lines: Vec<&str> = self
             .last
             .iter()
@@ -191,7 +192,7 @@ impl Program {
         let lines = &lines[from..];
         let quoted = if lines.is_empty() { String::new() } else { format!(": {}", lines.join(" | ")) };
         let reason = format!("`{}`: {what}{quoted}", self.command);
-        Err(ExperimentError::EngineLost { engine: crate::refusal::NAME.into(), reason })
+        Err(EngineError::Lost { engine: crate::refusal::NAME.into(), reason })
     }
 
     fn ends_within(&mut self, limit: Duration) -> bool {

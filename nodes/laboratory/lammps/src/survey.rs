@@ -1,8 +1,8 @@
 //! Time step and tangent stiffness of a state, by our engine.
 
 use grainlab_core::Packing;
-use grainlab_dem::{Engine, EngineSettings};
-use grainlab_experiment::{ExperimentError, Observables};
+use grainlab_dem::Engine;
+use grainlab_engine::{EngineError, EngineSettings, Observables};
 use serde::{Deserialize, Serialize};
 
 /// Change of the load of contacts after which a state is surveyed again.
@@ -42,7 +42,7 @@ impl Survey {
     pub(crate) fn of(
         packing: &Packing,
         settings: &EngineSettings,
-    ) -> Result<(Self, Observables), ExperimentError> {
+    ) -> Result<(Self, Observables), EngineError> {
         let mut engine = Engine::from_packing(packing, *settings)?;
         engine.initialise()?;
         engine.update_time_step();

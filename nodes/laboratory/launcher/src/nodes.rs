@@ -270,7 +270,7 @@ fn simulator(bus: &mut dyn Bus, parameters: &Parameters) -> Result<DemSimulator,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainlab_node_kit::Hub;
+    use grainlab_node_kit::{Hub, Statistics};
 
     #[test]
     fn a_name_means_its_node_and_an_unknown_one_lists_all() {

@@ -3,13 +3,15 @@
 use crate::child::Run;
 use grainlab_acoustic_probe::{DECLINED_STEP, MEASURING};
 use grainlab_console::{Failure, say};
-use grainlab_emt::{Status, recommended};
+use grainlab_core::notes::Status;
+use grainlab_core::results::Estimate;
+use grainlab_emt::recommended;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
-use grainlab_msgs::msg::{Estimate, Microstructure, Moduli, PackingReport, RunState, WaveSpeeds};
+use grainlab_msgs::msg::{Microstructure, Moduli, PackingReport, RunState, WaveSpeeds};
 use grainlab_msgs::{PhaseReport, Topic, stamp, topics};
 use grainlab_node_kit::{
-    Bus, BusError, DdsBus, Demand, Identity, Names, Participant, Report, Subscription, bus_named, member_of,
-    watchdog,
+    Bus, BusError, DdsBus, Demand, Graph, Identity, Names, Participant, Report, Subscription, bus_named,
+    member_of, watchdog,
 };
 use grainlab_recorder::strangers::name;
 use std::collections::{BTreeMap, BTreeSet};
@@ -282,26 +284,27 @@ fn has_joined(bus: &DdsBus, simulator: Option<u8>) -> bool {
     states.iter().any(|writer| simulator.is_none_or(|member| member_of(&writer.participant()) == member))
 }
 
-/// Why no estimate of a microstructure is recommended; `None` if one is.
+/// Returns why no estimate of a microstructure is recommended; `None` if one is.
 fn without_estimate(found: &Microstructure) -> Option<String> {
-    let status = |e: &Estimate| match e.status {
-        Estimate::STATUS_OK => Status::Ok,
-        Estimate::STATUS_EXTRAPOLATED => Status::Extrapolated,
-        Estimate::STATUS_CONTRADICTORY => Status::Contradictory,
-        _ => Status::Unknown,
+    let estimates = match found.results() {
+        Ok(estimates) => estimates,
+        Err(refused) => return Some(refused.to_string()),
     };
-    let asked = || found.estimates.iter().map(|e| (e.model.as_str(), status(e)));
-    // The reason of the model that would be recommended.
-    let first = recommended(asked().map(|(model, _)| (model, Status::Ok)));
-    let without =
-        found.estimates.iter().find(|e| Some(e.model.as_str()) == first).or(found.estimates.first());
-    let why = without.and_then(|e| e.warnings.first()).map_or("no model was asked", String::as_str);
-    // Any of models that this program does not have.
-    let nothing = match first {
-        Some(_) => recommended(asked()).is_none(),
-        None => asked().all(|(_, status)| status == Status::Unknown),
+    let asked = |status: fn(&Estimate) -> Status| {
+        recommended(estimates.iter().map(|estimate| (estimate.model.as_str(), status(estimate))))
     };
-    nothing.then(|| why.to_owned())
+    // The model whose estimate would be recommended; none of models that this program does not have.
+    let preferred = asked(|_| Status::Ok);
+    let is_answered = match preferred {
+        Some(_) => asked(|estimate| estimate.status).is_some(),
+        None => estimates.iter().any(|estimate| estimate.status != Status::Unknown),
+    };
+    if is_answered {
+        return None;
+    }
+    let without = estimates.iter().find(|estimate| Some(estimate.model.as_str()) == preferred);
+    let why = without.or(estimates.first()).and_then(|estimate| estimate.notes.first());
+    Some(why.map_or_else(|| "no model was asked".to_owned(), ToString::to_string))
 }
 
 #[cfg(test)]
@@ -310,9 +313,12 @@ mod tests {
 
     #[test]
     fn an_answer_to_refused_data_is_no_estimate() {
+        use grainlab_msgs::msg::Estimate;
         let estimate = |status, warning: &str| Estimate {
             status,
             warnings: vec![warning.to_owned()],
+            z: vec![5.0],
+            gamma_over_delta_source: "none".to_owned(),
             ..Estimate::default()
         };
         let refused = || estimate(Estimate::STATUS_UNKNOWN, "speeds[0].speed = NaN is refused");

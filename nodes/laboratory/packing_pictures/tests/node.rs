@@ -5,7 +5,9 @@ use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::sensor_msgs::PointCloud2;
 use grainlab_msgs::visualization_msgs::MarkerArray;
 use grainlab_msgs::{msg, topics};
-use grainlab_node_kit::{Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, RosArgs, Subscription};
+use grainlab_node_kit::{
+    Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, RosArgs, Statistics, Subscription,
+};
 use grainlab_packing_pictures::PackingPictures;
 
 fn join(hub: &Hub, name: &str) -> MemoryBus {

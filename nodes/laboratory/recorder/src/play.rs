@@ -6,15 +6,16 @@ mod publisher;
 mod session;
 mod watch;
 
-use grainlab_console::Failure;
+use grainlab_console::{Failure, say};
 use grainlab_msgs::topics;
-use grainlab_node_kit::{Bus, Exit, tool_bus};
-use grainlab_recordings::{PlayOptions, Player, QosOverrides, Recording, StoredDefinition};
+use grainlab_node_kit::{DdsBus, Exit, tool_bus};
+use grainlab_recordings::{ChannelInfo, PlayOptions, Player, QosOverrides, Recording, StoredDefinition};
 use keys::Keys;
 use publisher::{TopicPublishers, offer, pause, wait_for_readers};
 use session::{Ended, Session};
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::sync::Arc;
 use std::time::Duration;
 
 const EXAMPLES: &str = "\
@@ -135,15 +136,25 @@ fn check_remaps(remaps: &[Remap], topics: &[(&str, &str)]) -> Result<(), String>
     Ok(())
 }
 
+/// Refuses a QoS profile of a topic that is not played. `topics`: names and types.
+fn check_overrides(overrides: &QosOverrides, topics: &[(&str, &str)]) -> Result<(), String> {
+    let is_played = |name: &&str| topics.iter().any(|(topic, _)| topic.trim_start_matches('/') == *name);
+    let Some(name) = overrides.topics().find(|name| !is_played(name)) else { return Ok(()) };
+    let known = topics.iter().map(|(topic, _)| *topic).collect::<Vec<_>>().join(", ");
+    Err(format!("--qos-profile-overrides-path: /{name} is not played; played are: {known}"))
+}
+
+/// Returns the time that an argument states in seconds.
+fn seconds(flag: &str, value: f64) -> Result<Duration, Failure> {
+    let message = |_| Failure::usage(format!("--{flag} {value} is out of range: seconds, 0 or more"));
+    Duration::try_from_secs_f64(value).map_err(message)
+}
+
 /// Runs the command.
 ///
 /// # Errors
 /// If the recording cannot be read, a topic does not exist, or the bus fails.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
-    let seconds = |flag: &str, value: f64| {
-        let message = |_| Failure::usage(format!("--{flag} {value} is out of range: seconds, 0 or more"));
-        Duration::try_from_secs_f64(value).map_err(message)
-    };
     let mut options = PlayOptions {
         exclude: args.exclude.clone(),
         topics: (!args.topics.is_empty()).then(|| args.topics.clone()),
@@ -156,110 +167,80 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     // Errors of the options are found before anything is published.
     let overrides = args.qos_profile_overrides_path.as_deref().map(QosOverrides::read).transpose()?;
     let overrides = overrides.unwrap_or_default();
-    let wanted = Player::new(&recording, &options)?.channels().to_vec();
-    let topics: Vec<(&str, &str)> = wanted.iter().map(|c| (c.topic.as_str(), c.ros_type.as_str())).collect();
+    let channels = Player::new(&recording, &options)?.channels().to_vec();
+    let topics: Vec<(&str, &str)> =
+        channels.iter().map(|c| (c.topic.as_str(), c.ros_type.as_str())).collect();
     check_remaps(&args.remap, &topics).map_err(Failure::usage)?;
-    let is_played = |name: &&str| topics.iter().any(|(topic, _)| topic.trim_start_matches('/') == *name);
-    if let Some(name) = overrides.topics().find(|name| !is_played(name)) {
-        let known = topics.iter().map(|(topic, _)| *topic).collect::<Vec<_>>().join(", ");
-        return Err(Failure::usage(format!(
-            "--qos-profile-overrides-path: /{name} is not played; played are: {known}"
-        )));
-    }
+    check_overrides(&overrides, &topics).map_err(Failure::usage)?;
 
     let mut bus = tool_bus("player")?;
     pause(&mut bus, LOOK_AROUND);
-    let (mut publishers, mut refused) = (TopicPublishers::new(), false);
-    for channel in wanted {
-        let name = channel.topic.clone();
-        let to = renamed(&args.remap, &name);
-        let replaced = args.clock.is_some() && to == topics::CLOCK.name;
-        let publisher = match replaced {
-            true => Err("--clock publishes it".to_owned()),
-            false if matches!(channel.stored, StoredDefinition::Refused(_)) => {
-                refused = true;
-                Err(channel.stored.note().unwrap_or_default())
-            }
-            false => offer(&mut bus, &channel, to, &overrides)?,
-        };
-        match publisher {
-            Ok(publisher) => {
-                channel
-                    .stored
-                    .note()
-                    .iter()
-                    .for_each(|note| grainlab_console::say!("grainlab: {name}: {note}"));
-                publishers.insert(name, publisher);
-            }
-            Err(reason) => {
-                grainlab_console::say!("grainlab: {name} is left out: {reason}");
-                options.exclude.push(name);
-            }
-        }
-    }
+    let Offered { mut publishers, left_out, is_refused } = offer_all(args, &mut bus, channels, &overrides)?;
     if publishers.is_empty() {
         return Err(Failure::failed("nothing is left to play"));
     }
+    options.exclude.extend(left_out);
     if !wait_for_readers(&mut bus, &mut publishers, args.min_subscribers, patience) {
         return Ok(Exit::Interrupted);
     }
-    let keys = Keys::open(args.start_paused || args.step);
-    let clock = args.clock.map(|hz| session::ClockPublisher::advertise(&mut bus, hz)).transpose()?;
-    let mut session = Session {
-        bus: &mut bus,
-        publishers: &mut publishers,
-        keys,
-        clock,
-        sent: 0,
-        unread: 0,
-        late: Duration::ZERO,
-        next_look: Duration::ZERO,
-    };
-    let mut is_paused = args.start_paused || args.step;
-    let ended = loop {
-        let mut player = Player::new(&recording, &options)?;
-        if std::mem::take(&mut is_paused) {
-            player.pause(session.bus.now());
-        }
-        let ended = session.play(&mut player)?;
-        if !args.again || session.is_over(ended) {
-            break ended;
-        }
-    };
-    let (sent, unread, late) = (session.sent, session.unread, session.late);
-    drop(session);
-    let finished = match ended {
+    let is_paused = args.start_paused || args.step;
+    let mut session = Session::new(bus, publishers, Keys::open(is_paused), args.clock)?;
+    let ended = session.play(&recording, &options, is_paused, args.again)?;
+    let is_finished = match ended {
         Ended::Signal => false,
         Ended::Stuck => true,
-        Ended::Done | Ended::Key => delivery::wait(&mut bus, &mut publishers)?,
+        Ended::Done | Ended::Key => delivery::wait(&mut session.bus, &mut session.publishers)?,
     };
     std::thread::sleep(GRACE);
     let warnings = recording.warnings();
-    warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
-    if late > Duration::from_millis(100) {
-        grainlab_console::say!(
-            "grainlab: the readers are slower than the recording: {:.1} s late in total",
-            late.as_secs_f64()
-        );
-    }
-    if !finished {
+    warnings.iter().for_each(|w| say!("grainlab: {w}"));
+    session.say_delay();
+    if !is_finished {
         return Ok(Exit::Interrupted);
     }
-    let was_read = publishers.values().any(|publisher| publisher.watch().was_read());
-    let to = if was_read { "" } else { ", without a subscriber" };
-    grainlab_console::say!("grainlab: {} sent{to}", grainlab_console::count(sent, "message"));
-    if unread > 0 {
-        grainlab_console::say!(
-            "grainlab: {} left out: their definition differs from that of this program",
-            grainlab_console::count(unread, "message")
-        );
+    let is_whole = session.report(ended) && warnings.is_empty() && !is_refused;
+    Ok(if is_whole { Exit::Done } else { Exit::DataLoss })
+}
+
+/// The publishers of a playback, and the topics that are left out.
+struct Offered {
+    publishers: TopicPublishers,
+    left_out: Vec<String>,
+    /// The definition of a topic in the recording is refused.
+    is_refused: bool,
+}
+
+/// Advertises the recorded topics, and says which are left out and why.
+fn offer_all(
+    args: &Args,
+    bus: &mut DdsBus,
+    channels: Vec<Arc<ChannelInfo>>,
+    overrides: &QosOverrides,
+) -> Result<Offered, Failure> {
+    let (mut publishers, mut left_out, mut is_refused) = (TopicPublishers::new(), Vec::new(), false);
+    for channel in channels {
+        let (name, to) = (&channel.topic, renamed(&args.remap, &channel.topic));
+        let note = channel.stored.note();
+        let offered = if args.clock.is_some() && to == topics::CLOCK.name {
+            Err("--clock publishes it".to_owned())
+        } else if matches!(channel.stored, StoredDefinition::Refused(_)) {
+            is_refused = true;
+            Err(note.clone().unwrap_or_default())
+        } else {
+            offer(bus, &channel, to, overrides)?
+        };
+        match offered {
+            Ok(publisher) => {
+                note.iter().for_each(|note| say!("grainlab: {name}: {note}"));
+                publishers.insert(channel.topic.clone(), publisher);
+            }
+            Err(reason) => {
+                say!("grainlab: {name} is left out: {reason}");
+                left_out.push(channel.topic.clone());
+            }
+        }
     }
-    if ended == Ended::Stuck {
-        grainlab_console::say!("grainlab: the playback ended before the end of the recording");
-    }
-    let delivered = delivery::report(&publishers);
-    let whole = delivered && ended != Ended::Stuck && warnings.is_empty() && !refused && unread == 0;
-    Ok(if whole { Exit::Done } else { Exit::DataLoss })
+    Ok(Offered { publishers, left_out, is_refused })
 }
 
 fn frequency(text: &str) -> Result<f64, String> {

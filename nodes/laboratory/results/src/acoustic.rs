@@ -1,8 +1,9 @@
 //! Wave speeds of one packing, and the moduli of the medium with these speeds.
 
 use crate::measurements::Measurement;
-use crate::quantities::entries;
+use crate::quantities::{NoteView, entries};
 use grainlab_console::count;
+use grainlab_core::notes::{Note, texts};
 use grainlab_core::quantities;
 use grainlab_core::quantity::{Quantity, Shape::*};
 use grainlab_core::{MeasuredWave, Stiffness};
@@ -109,34 +110,32 @@ impl AcousticReport {
         errors
     }
 
-    /// The first note on the speeds, and the number of the others.
-    pub(crate) fn doubt(&self) -> Option<String> {
-        let warnings = self.warnings();
-        let more = match warnings.len() {
-            0 | 1 => String::new(),
-            n => format!("; and {} on the speeds", count(n - 1, "further note")),
+    /// Returns the first note on the speeds, and words on the number of the others.
+    pub(crate) fn doubt(&self) -> Option<(Note, String)> {
+        let mut notes = self.notes().into_iter();
+        let first = notes.next()?;
+        let more = match notes.len() {
+            0 => String::new(),
+            n => format!("; and {} on the speeds", count(n, "further note")),
         };
-        Some(format!("wave speeds: {}{more}", warnings.first()?))
+        Some((first, more))
     }
 
-    /// Notes on the speeds and their medium.
-    pub fn warnings(&self) -> Vec<String> {
-        let mut warnings = self.reading.warnings.clone();
-        let no_axis = self.medium.no_axis.iter().filter(|_| self.medium.fitted.is_ok());
-        warnings.extend(
-            no_axis
-                .map(|why| format!("no axis stands out in the speeds, and the moduli are about e3: {why}")),
-        );
-        warnings.extend(match &self.medium.fitted {
+    /// Returns notes on the speeds and their medium.
+    pub fn notes(&self) -> Vec<Note> {
+        let medium = &self.medium;
+        let no_axis = medium.no_axis.iter().filter(|_| medium.fitted.is_ok());
+        let of_medium = match &medium.fitted {
             Ok(fitted) => fitted.conflict.as_ref().map(|conflict| {
-                format!(
-                    "the wave speeds contradict each other: speeds[{}] is {:.1} sigma from the prediction by the others",
-                    conflict.worst, conflict.sigma
-                )
+                let (chi_square, freedom) =
+                    (fitted.chi_square.unwrap_or_default(), fitted.degrees_of_freedom);
+                let worst = format!("speeds[{}]", conflict.worst);
+                Note::speeds_contradict(worst, chi_square, freedom as f64, conflict.sigma)
             }),
-            Err(error) => Some(error.to_string()),
-        });
-        warnings
+            Err(error) => Some(Note::remark(error.to_string())),
+        };
+        let of_axis = no_axis.map(|why| Note::no_axis(why.to_string()));
+        self.reading.notes.iter().cloned().chain(of_axis).chain(of_medium).collect()
     }
 }
 
@@ -149,7 +148,9 @@ impl Serialize for AcousticReport {
         entries(&mut map, ACOUSTIC, self)?;
         map.serialize_entry("speeds", &self.reading.speeds.iter().map(speed).collect::<Value>())?;
         map.serialize_entry("modes", &self.modes.iter().map(speed).collect::<Value>())?;
-        map.serialize_entry("warnings", &self.warnings())?;
+        let notes = self.notes();
+        map.serialize_entry("warnings", &texts(&notes))?;
+        map.serialize_entry("notes", &notes.iter().map(NoteView).collect::<Vec<_>>())?;
         map.end()
     }
 }
@@ -170,6 +171,7 @@ fn speed(m: &MeasuredWave) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use grainlab_core::notes::Code;
     use grainlab_core::{TransverseIsotropy, Vec3, WaveMethod, WaveSpeed};
 
     const MEDIUM: TransverseIsotropy = TransverseIsotropy::of_constants(360e6, 400e6, 70e6, 150e6, 140e6);
@@ -209,7 +211,7 @@ mod tests {
             contact_law: None,
             smooth: false,
             speeds: directions.iter().flat_map(along).collect(),
-            warnings: vec!["send less".to_owned()],
+            notes: vec![Note::remark("send less")],
         }
     }
 
@@ -234,8 +236,7 @@ mod tests {
         assert_eq!((&json["method"], &json["speed_count"]), (&"dispersion".into(), &9.into()));
         assert_eq!(json["degrees_of_freedom"], 4);
         assert!(report.relative_errors().iter().all(|e| (e - 0.003).abs() < 1e-12));
-        assert_eq!(report.doubt().unwrap(), "wave speeds: send less");
-        assert_eq!(report.warnings(), ["send less"]);
+        assert_eq!(report.notes(), [Note::remark("send less")]);
     }
 
     #[test]
@@ -247,8 +248,8 @@ mod tests {
         let (few, named) = (unnamed(&[Vec3::z()]), AcousticReport::new(1000, 1300.0, speeds(&[Vec3::z()])));
         let found = |report| serde_json::to_value(report).unwrap()["axis_found"].clone();
         assert_eq!((found(&few), found(&named), few.medium.axis), (false.into(), true.into(), Vec3::z()));
-        assert!(few.warnings()[1].contains("no axis stands out"), "{:?}", few.warnings());
-        assert_eq!(named.warnings().len(), 1);
+        assert!(few.notes()[1].is(Code::NoAxis), "{:?}", few.notes());
+        assert_eq!(named.notes().len(), 1);
     }
 
     #[test]
@@ -258,6 +259,6 @@ mod tests {
         assert!(one.modulus(Modulus::C11).is_none() && one.stddev(Modulus::C11).is_none());
         let none = AcousticReport::new(1000, 1300.0, speeds(&[]));
         assert!(Modulus::ALL.iter().all(|m| none.medium.modulus(*m).is_none()) && none.method().is_none());
-        assert_eq!(none.warnings().len(), 2, "{:?}", none.warnings());
+        assert_eq!(none.notes().len(), 2, "{:?}", none.notes());
     }
 }

@@ -40,7 +40,7 @@ pub(crate) fn text(a: &AcousticReport, report: &PackingReport) -> String {
         (None, Some(_)) => format!("  moduli about ({x:.3}, {y:.3}, {z:.3})\n"),
     };
     text += &indented(&moduli(a, report.stiffness().map(|s| &s.tensor)).without_empty_columns().text());
-    a.warnings().iter().for_each(|w| text += &format!("  note: {w}\n"));
+    a.notes().iter().for_each(|w| text += &format!("  note: {w}\n"));
     text
 }
 

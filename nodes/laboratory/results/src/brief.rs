@@ -12,6 +12,7 @@ use crate::read_back::InvertedPacking;
 use crate::summary::Summary;
 use grainlab_console::{count, fixed, three_digits};
 use grainlab_core::Vec3;
+use grainlab_core::notes::{Note, Status};
 use grainlab_core::results::{InferredQuantity, PackingReport};
 use grainlab_msgs::{Exit, topics};
 use std::collections::BTreeSet;
@@ -116,10 +117,11 @@ fn one(state: &InvertedPacking) -> Vec<String> {
         None => lines.push(row("Measured", &measured(r))),
         Some(why) => lines.push(row("Measured", &format!("no stiffness: {why}"))),
     }
-    let told = r.elasticity.as_ref().err().map(ToString::to_string);
-    let notes = state.packing.warnings.iter().filter(|w| Some(*w) != told.as_ref());
-    lines.extend(notes.map(|note| row("Note", note)));
-    lines.extend(state.acoustics().filter_map(AcousticReport::doubt).map(|note| row("Note", &note)));
+    let told = r.elasticity.as_ref().err().map(Note::from);
+    let notes = state.packing.notes.iter().filter(|note| Some(*note) != told.as_ref());
+    lines.extend(notes.map(|note| row("Note", &note.to_string())));
+    let of_speeds = state.acoustics().filter_map(AcousticReport::doubt);
+    lines.extend(of_speeds.map(|(note, more)| row("Note", &format!("wave speeds: {note}{more}"))));
     let groups = by_origin(&state.results);
     let shown = if groups.len() > MOST_GROUPS { MOST_GROUPS - 1 } else { groups.len() };
     for (origin, results) in &groups[..shown] {
@@ -150,7 +152,8 @@ fn recommended(e: &Inference, source: &str, truth: &PackingReport) -> Vec<String
         let sigma = sigma.unwrap_or_else(|| "?".to_owned());
         row("", &format!("{name:6}{value:6} +- {sigma:6}  error {error}"))
     });
-    let why = e.warnings.iter().filter(|_| e.status != "ok").take(MOST_NOTES).map(|w| row("Note", w));
+    let why = e.notes.iter().filter(|_| e.status != Status::Ok).take(MOST_NOTES);
+    let why = why.map(|note| row("Note", &note.to_string()));
     std::iter::once(row("Inferred", &title)).chain(values).chain(why).collect()
 }
 
@@ -234,7 +237,7 @@ fn estimate(
 ) -> impl Iterator<Item = (&'static str, String, Option<String>, String)> {
     InferredQuantity::ALL.into_iter().filter_map(|q| {
         let (value, truth, digits) = (e.values[q]?, truth.counted(q)?, q.digits());
-        let sigma = e.sigma[q].map(|s| format!("{s:.digits$}"));
+        let sigma = e.sigma(q).map(|s| format!("{s:.digits$}"));
         Some((q.text(), format!("{value:.digits$}"), sigma, format!("{:+.digits$}", value - truth)))
     })
 }

@@ -42,8 +42,8 @@ impl Findings {
     /// Reasons to doubt these states, each of which is of one `noun`.
     pub fn doubts(states: &[&InvertedPacking], noun: &str) -> Vec<String> {
         let mut doubts = Doubts::default();
-        states.iter().enumerate().for_each(|(n, state)| doubts.of(n, state));
-        states.iter().enumerate().for_each(|(n, state)| doubts.further(n, state));
+        states.iter().enumerate().for_each(|(n, state)| doubts.take(n, state));
+        states.iter().enumerate().for_each(|(n, state)| doubts.count_further(n, state));
         let beside = doubts::beside_the_count(states, noun);
         beside.into_iter().chain(doubts.finish(states.len(), noun)).collect()
     }
@@ -172,15 +172,17 @@ fn s(is_wanted: bool) -> &'static str {
 mod tests {
     use super::*;
     use crate::measured_packing::tests::{lattice, measured};
-    use grainlab_msgs::boundary::ModelResult;
+    use grainlab_core::notes::{Note, Status};
+    use grainlab_core::results::{Estimate, MicrostructureCovariance};
 
     /// The result of a model with z ± its standard deviation.
-    fn result(status: &'static str, z: Option<(f64, f64)>, warnings: &[&str]) -> Inference {
-        let warnings = warnings.iter().map(|w| (*w).to_owned()).collect();
-        let mut found = ModelResult::unknown("relaxed", "grainlab", warnings);
+    fn result(status: Status, z: Option<(f64, f64)>, reasons: &[&'static str]) -> Inference {
+        let mut found = Estimate { model: "relaxed".to_owned(), status, ..Estimate::default() };
+        found.notes = reasons.iter().map(|reason| Note::remark(*reason)).collect();
         if let Some((value, sigma)) = z {
-            (found.values.0[InferredQuantity::Z as usize], found.status) = (Some(value), status);
-            found.sigma.0[InferredQuantity::Z as usize] = Some(sigma);
+            let at = InferredQuantity::Z as usize;
+            found.values.0[at] = Some(value);
+            found.covariance.insert(MicrostructureCovariance::zeros())[(at, at)] = sigma * sigma;
         }
         found.into()
     }
@@ -198,7 +200,7 @@ mod tests {
 
     #[test]
     fn a_value_beside_its_count_has_its_distance_and_is_inside_or_outside_of_its_interval() {
-        let found = of(true, result("ok", Some((5.9, 0.1)), &[])).found;
+        let found = of(true, result(Status::Ok, Some((5.9, 0.1)), &[])).found;
         assert_eq!(
             found,
             [
@@ -206,7 +208,7 @@ mod tests {
                 "The counted z lies in the 95 % interval."
             ]
         );
-        let Findings { found, doubts, .. } = of(true, result("ok", Some((5.0, 0.1)), &[]));
+        let Findings { found, doubts, .. } = of(true, result(Status::Ok, Some((5.0, 0.1)), &[]));
         assert!(
             found[0].contains("10.0 σ away")
                 && found[1] == "The counted z lies outside of the 95 % interval."
@@ -216,8 +218,8 @@ mod tests {
 
     #[test]
     fn an_estimate_with_another_status_is_doubted_with_its_first_reason() {
-        assert!(of(true, result("ok", Some((6.0, 0.1)), &["a note"])).doubts.is_empty());
-        for status in ["extrapolated", "contradictory"] {
+        assert!(of(true, result(Status::Ok, Some((6.0, 0.1)), &["a note"])).doubts.is_empty());
+        for status in [Status::Extrapolated, Status::Contradictory] {
             let doubts = of(true, result(status, Some((6.0, 0.1)), &["why", "more"])).doubts;
             assert_eq!(doubts, [format!("The estimate is {status}: why.")]);
         }
@@ -225,10 +227,10 @@ mod tests {
 
     #[test]
     fn without_an_estimate_the_reason_is_the_doubt_and_nothing_is_found() {
-        let unknown = of(true, result("unknown", None, &["smooth contacts"]));
+        let unknown = of(true, result(Status::Unknown, None, &["smooth contacts"]));
         assert!(unknown.found.is_empty());
         assert_eq!(unknown.doubts, ["Nothing was inferred: model relaxed: smooth contacts."]);
-        let gas = of(false, result("unknown", None, &[]));
+        let gas = of(false, result(Status::Unknown, None, &[]));
         assert!(
             gas.found.is_empty()
                 && gas.doubts[0].starts_with("Nothing was inferred: there is no stiffness: ")
@@ -239,8 +241,8 @@ mod tests {
     #[test]
     fn several_states_have_one_sentence_and_a_doubt_names_the_number_of_its_states() {
         let states = [
-            state(1, true, result("ok", Some((6.3, 0.2)), &[])),
-            state(2, true, result("extrapolated", Some((5.6, 0.1)), &["far"])),
+            state(1, true, result(Status::Ok, Some((6.3, 0.2)), &[])),
+            state(2, true, result(Status::Extrapolated, Some((5.6, 0.1)), &["far"])),
         ];
         let Findings { done, found, doubts } = Findings::of(&states);
         assert!(done.starts_with("1 grain in 2 states: pressure "), "{done}");
@@ -257,7 +259,7 @@ mod tests {
     #[test]
     fn errors_of_one_sign_and_fewer_values_in_their_intervals_than_by_chance_are_doubts() {
         let of = |z: &[f64]| {
-            let one = |(n, z): (u64, &f64)| state(n, true, result("ok", Some((*z, 0.1)), &[]));
+            let one = |(n, z): (u64, &f64)| state(n, true, result(Status::Ok, Some((*z, 0.1)), &[]));
             Findings::of(&(1..).zip(z).map(one).collect::<Vec<_>>()).doubts
         };
         assert!(of(&[5.95, 6.05, 5.9, 5.5]).is_empty() && of(&[6.1; 7]).is_empty());
@@ -267,23 +269,29 @@ mod tests {
 
     #[test]
     fn doubts_that_differ_by_numbers_are_one_with_their_range_and_the_number_of_its_states() {
-        let doubt = |n, q: &str| {
-            let mut one = state(n, true, result("ok", Some((6.0, 0.1)), &[]));
-            one.packing.warnings = vec![format!("q/p = {q}, far from C33")];
+        let doubt = |n, phi: f64| {
+            let mut one = state(n, true, result(Status::Ok, Some((6.0, 0.1)), &[]));
+            one.packing.notes = vec![Note::overfull(phi)];
             one
         };
         let states = [
-            doubt(1, "0.7569"),
-            doubt(2, "0.81"),
-            doubt(3, "-0.6"),
-            state(4, true, result("ok", Some((6.0, 0.1)), &[])),
+            doubt(1, 0.9769),
+            doubt(2, 0.981),
+            doubt(3, 0.96),
+            state(4, true, result(Status::Ok, Some((6.0, 0.1)), &[])),
         ];
-        assert_eq!(Findings::of(&states).doubts, ["In 3 of 4 states: q/p = -0.6 to 0.81, far from C33."]);
+        assert_eq!(
+            Findings::of(&states).doubts,
+            [
+                "In 3 of 4 states: solid fraction 0.960 to 0.981: no grains fill a cell so far; check the units of cell and radii."
+            ]
+        );
     }
 
     #[test]
     fn a_reason_counts_in_every_state_that_has_it_not_only_where_it_is_the_first() {
-        let of = |n, why: &[&str]| state(n, true, result("extrapolated", Some((6.0, 0.1)), why));
+        let of =
+            |n, why: &[&'static str]| state(n, true, result(Status::Extrapolated, Some((6.0, 0.1)), why));
         let states = [of(1, &["the pressure", "the law"]), of(2, &["the law"]), of(3, &["the law", "x"])];
         assert_eq!(
             Findings::of(&states).doubts,
@@ -296,8 +304,8 @@ mod tests {
 
     #[test]
     fn of_many_doubts_the_first_are_written_out_and_the_others_counted() {
-        let mut one = state(1, true, result("ok", Some((6.0, 0.1)), &[]));
-        one.packing.warnings = ["a", "b", "c", "d", "e"].map(str::to_owned).to_vec();
+        let mut one = state(1, true, result(Status::Ok, Some((6.0, 0.1)), &[]));
+        one.packing.notes = ["a", "b", "c", "d", "e"].map(Note::remark).to_vec();
         assert_eq!(Findings::of(&[one]).doubts, ["A.", "B.", "C.", "And 2 further warnings."]);
     }
 
@@ -306,7 +314,7 @@ mod tests {
         let states = [1e-4, 2e-4].map(|share: f64| {
             let mut soft = lattice(true);
             soft.contacts.iter_mut().for_each(|c| c.normal_force *= share);
-            InvertedPacking { packing: measured(&soft), ..state(1, true, result("unknown", None, &[])) }
+            InvertedPacking { packing: measured(&soft), ..state(1, true, result(Status::Unknown, None, &[])) }
         });
         let [low, high] = states.each_ref().map(|s| three_digits(Some(s.packing.report.pressure() / 1e3), 1));
         assert!(low.starts_with("0.00"), "{low}");

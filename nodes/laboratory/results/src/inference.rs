@@ -1,50 +1,96 @@
 //! Results of the models, with the stable keys of `results[]`.
 
 use crate::measurements::Measurement;
-use grainlab_core::results::InferredQuantity;
-use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, Status, recommended};
-use grainlab_msgs::boundary::{Interval, ModelResult, Quantities};
+use crate::quantities::NoteView;
+use grainlab_core::notes::{Note, Status, texts};
+use grainlab_core::results::{Estimate, InferredQuantity, Quantities};
+use grainlab_emt::{EmtError, Inversion, recommended};
 use grainlab_msgs::topics::{MODULI, PACKING_REPORT};
-use serde::Serialize;
+use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::collections::BTreeMap;
 use std::ops::Deref;
 
-/// One model's result, and the origin of its data.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// The estimate of one model, and the origin of its data.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Inference {
-    /// Origin of its data.
-    #[serde(flatten)]
+    /// Origin of the data.
     pub origin: Origin,
     /// Result of the model.
-    #[serde(flatten)]
-    pub result: ModelResult,
+    pub estimate: Estimate,
 }
 
 impl Deref for Inference {
-    type Target = ModelResult;
+    type Target = Estimate;
 
-    fn deref(&self) -> &ModelResult {
-        &self.result
+    fn deref(&self) -> &Estimate {
+        &self.estimate
     }
 }
 
-impl From<ModelResult> for Inference {
-    fn from(result: ModelResult) -> Self {
-        Self { origin: Origin::default(), result }
+impl From<Estimate> for Inference {
+    fn from(estimate: Estimate) -> Self {
+        Self { origin: Origin::default(), estimate }
+    }
+}
+
+/// The stable keys of `results[]`.
+impl Serialize for Inference {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let (e, Origin { source, by, measurement }) = (&self.estimate, &self.origin);
+        let mut map = serializer.serialize_map(None)?;
+        source.iter().try_for_each(|source| map.serialize_entry("source", source))?;
+        by.iter().try_for_each(|by| map.serialize_entry("by", by))?;
+        measurement.iter().try_for_each(|m| map.serialize_entry("measurement", m))?;
+        map.serialize_entry("model", &e.model)?;
+        map.serialize_entry("calibration", &e.calibration)?;
+        for quantity in InferredQuantity::ALL {
+            map.serialize_entry(quantity.name(), &e.values[quantity])?;
+        }
+        map.serialize_entry("sigma", &ByName(&Quantities::from_fn(|q| e.sigma(q))))?;
+        map.serialize_entry("sigma_model", &ByName(&Quantities::from_fn(|q| e.sigma_model(q))))?;
+        map.serialize_entry("interval", &IntervalView(e))?;
+        map.serialize_entry("chi_square", &e.chi_square)?;
+        map.serialize_entry("degrees_of_freedom", &e.degrees_of_freedom)?;
+        map.serialize_entry("condition_number", &e.condition_number)?;
+        map.serialize_entry("status", e.status.name())?;
+        map.serialize_entry("gamma_over_delta", &e.gamma.map(|gamma| gamma.value))?;
+        map.serialize_entry("gamma_over_delta_source", &e.gamma.map(|gamma| gamma.source))?;
+        map.serialize_entry("warnings", &texts(&e.notes))?;
+        map.serialize_entry("notes", &e.notes.iter().map(NoteView).collect::<Vec<_>>())?;
+        map.end()
+    }
+}
+
+struct ByName<'a, T>(&'a Quantities<T>);
+
+impl<T: Serialize> Serialize for ByName<'_, T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(InferredQuantity::ALL.map(InferredQuantity::name).into_iter().zip(&self.0.0))
+    }
+}
+
+struct IntervalView<'a>(&'a Estimate);
+
+impl Serialize for IntervalView<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let interval = &self.0.interval;
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("level", &interval.level)?;
+        for quantity in InferredQuantity::ALL {
+            map.serialize_entry(quantity.name(), &interval.bounds[quantity])?;
+        }
+        map.end()
     }
 }
 
 /// Origin of results.
-#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Origin {
     /// Topic of the data; absent if they came from a command line or a file.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
     /// Node that inferred; absent if unknown.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
     /// Measurement of the packing, where there are several; else absent.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub measurement: Option<Measurement>,
 }
 
@@ -82,56 +128,30 @@ pub fn by_origin(results: &[Inference]) -> Vec<(Origin, Vec<&Inference>)> {
 }
 
 impl Inference {
-    /// The recommended one among the results of all models from the same data.
+    /// Returns the recommended one among the results of all models from the same data.
     pub fn recommended<'a>(results: &[&'a Self]) -> Option<&'a Self> {
-        let named = |r: &Self| {
-            [Status::Ok, Status::Extrapolated, Status::Contradictory]
-                .into_iter()
-                .find(|s| s.name() == r.status)
-        };
-        let status = |r: &Self| named(r).unwrap_or(Status::Unknown);
-        let name = recommended(results.iter().map(|r| (r.model.as_str(), status(r))))?;
+        let name = recommended(results.iter().map(|r| (r.model.as_str(), r.status)))?;
         results.iter().find(|r| r.model == name).copied()
     }
 
-    /// Why none of the results is recommended: the reason of the model that would be.
-    pub fn why_unknown(results: &[&Self]) -> Option<String> {
+    /// Returns the result of the model that would be recommended if each had an estimate.
+    pub fn preferred<'a>(results: &[&'a Self]) -> Option<&'a Self> {
         let name = recommended(results.iter().map(|r| (r.model.as_str(), Status::Ok)))?;
-        let without = results.iter().find(|r| r.model == name)?;
-        Some(format!("model {name}: {}", without.warnings.first()?))
+        results.iter().find(|r| r.model == name).copied()
     }
 
-    /// From the result of a model of the kernel.
-    pub fn of(model: &str, calibration: &str, outcome: &Result<Estimate, EmtError>) -> Self {
-        let estimate = match outcome {
-            Ok(estimate) => estimate,
-            Err(e) => return ModelResult::unknown(model, calibration, vec![e.to_string()]).into(),
-        };
-        // A covariance of zeros contains no information.
-        let known = estimate.covariance().is_some_and(|c| c.amax() > 0.0);
-        let of_model = |q: InferredQuantity| {
-            let i = q as usize;
-            estimate.structure.get(q).and(estimate.model_covariance).map(|c| c[(i, i)].max(0.0).sqrt())
-        };
-        let result = ModelResult {
-            model: estimate.model.to_owned(),
-            calibration: estimate.calibration.clone(),
-            values: Quantities(estimate.structure.values()),
-            sigma: Quantities::of(|q| estimate.stddev(q).filter(|_| known)),
-            sigma_model: Quantities::of(of_model),
-            interval: Interval {
-                level: known.then_some(CREDIBLE_LEVEL),
-                bounds: Quantities::of(|q| estimate.interval(q).filter(|_| known)),
-            },
-            chi_square: estimate.misfit.map(|m| m.chi_square),
-            degrees_of_freedom: Some(estimate.misfit.map_or(0, |m| m.degrees_of_freedom)),
-            condition_number: estimate.condition_number(),
-            status: estimate.status.name(),
-            gamma_over_delta: estimate.gamma.map(|g| g.value),
-            gamma_over_delta_source: estimate.gamma.map(|g| g.source.name()),
-            warnings: estimate.warnings.iter().map(ToString::to_string).collect(),
-        };
-        result.into()
+    /// Returns why none of the results is recommended: the reason of the model that would be.
+    pub fn why_unknown(results: &[&Self]) -> Option<String> {
+        let without = Self::preferred(results)?;
+        Some(format!("model {}: {}", without.model, without.notes.first()?))
+    }
+
+    /// Creates the result of a model of the kernel.
+    pub fn new(model: &str, calibration: &str, outcome: &Result<Inversion, EmtError>) -> Self {
+        match outcome {
+            Ok(inversion) => inversion.estimate().into(),
+            Err(error) => Estimate::unknown(model, calibration, vec![Note::from(error)]).into(),
+        }
     }
 }
 
@@ -168,14 +188,14 @@ mod tests {
         observation.conditions.material = Some(Material::GLASS);
         let observation = observation.with_relative_error(0.01);
         let outcome = grainlab_emt::model("ratio").unwrap().infer(&observation, &Calibration::PAPER);
-        let direct = Inference::of("ratio", "paper", &outcome);
-        assert!(direct.sigma[InferredQuantity::K].is_some() && direct.interval.level.is_some(), "{direct:?}");
+        let direct = Inference::new("ratio", "paper", &outcome);
+        assert!(direct.sigma(InferredQuantity::K).is_some() && direct.interval.level.is_some(), "{direct:?}");
         assert_eq!(read, direct);
     }
 
     #[test]
     fn the_keys_of_a_result_are_the_agreed_ones() {
-        let unknown = Inference::from(ModelResult::unknown("ratio", "paper", vec!["why".into()]));
+        let unknown = Inference::from(Estimate::unknown("ratio", "paper", vec![Note::no_answer("why")]));
         let keys = |value: &serde_json::Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
         let value = serde_json::to_value(&unknown).unwrap();
         let quantities = ["eps", "eps_stiffness", "k", "k_hat", "z"];
@@ -192,6 +212,7 @@ mod tests {
             "gamma_over_delta",
             "gamma_over_delta_source",
             "warnings",
+            "notes",
         ];
         expected.extend(quantities);
         expected.sort_unstable();

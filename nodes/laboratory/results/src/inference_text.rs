@@ -2,6 +2,7 @@
 
 use crate::inference::Inference;
 use grainlab_console::{CsvText, Table, fixed, wrapped};
+use grainlab_core::notes::Note;
 use grainlab_core::results::InferredQuantity;
 
 impl Inference {
@@ -17,9 +18,9 @@ impl Inference {
         cells.extend(
             InferredQuantity::ALL
                 .into_iter()
-                .flat_map(|q| [self.values[q], self.sigma[q]].map(|number| fixed(number, q.digits()))),
+                .flat_map(|q| [self.values[q], self.sigma(q)].map(|number| fixed(number, q.digits()))),
         );
-        cells.push(self.status.to_owned());
+        cells.push(self.status.to_string());
         cells
     }
 
@@ -38,31 +39,31 @@ impl Inference {
     pub fn exact_cells(&self, line: &mut CsvText) {
         line.cell(&self.model);
         line.cell(&self.calibration);
-        let by_kind = [&self.values, &self.sigma, &self.sigma_model];
+        let sigma = InferredQuantity::ALL.map(|q| self.sigma(q));
+        let sigma_model = InferredQuantity::ALL.map(|q| self.sigma_model(q));
         let bounds = self.interval.bounds.0.iter();
-        by_kind
+        [self.values.0, sigma, sigma_model]
             .into_iter()
-            .flat_map(|numbers| numbers.0)
+            .flatten()
             .chain(bounds.flat_map(|bound| [bound.map(|b| b[0]), bound.map(|b| b[1])]))
             .chain([self.chi_square, self.degrees_of_freedom.map(|n| n as f64), self.condition_number])
             .for_each(|number| line.number(number));
-        line.cell(self.status);
+        line.cell(self.status.name());
     }
 }
 
 /// The warnings of several results as lines, each with its models.
 pub fn warning_lines<'a>(results: impl IntoIterator<Item = &'a Inference>) -> String {
-    let mut seen: Vec<(&String, Vec<&str>)> = Vec::new();
+    let mut seen: Vec<(&Note, Vec<&str>)> = Vec::new();
     for r in results {
-        for w in &r.warnings {
-            match seen.iter_mut().find(|(known, _)| *known == w) {
+        for note in &r.notes {
+            match seen.iter_mut().find(|(known, _)| *known == note) {
                 Some((_, models)) => models.push(&r.model),
-                None => seen.push((w, vec![&r.model])),
+                None => seen.push((note, vec![&r.model])),
             }
         }
     }
-    let line =
-        |(text, models): &(&String, Vec<&str>)| wrapped("  ", &format!("{}: {text}", models.join(", ")));
+    let line = |(note, models): &(&Note, Vec<&str>)| wrapped("  ", &format!("{}: {note}", models.join(", ")));
     seen.iter().map(line).collect()
 }
 
@@ -76,12 +77,12 @@ pub fn recommended(results: &[Inference]) -> String {
     for q in InferredQuantity::ALL {
         let (Some(value), digits) = (best.values[q], q.digits()) else { continue };
         let interval = best.interval.bounds[q].map(|b| b.map(|end| format!("{end:.digits$}")).join(" to "));
-        let sigma = fixed(best.sigma[q], digits);
+        let sigma = fixed(best.sigma(q), digits);
         let cells = [format!("{value:.digits$}"), sigma, interval.unwrap_or_else(|| "-".to_owned())];
         t.row([q.text().to_owned()].into_iter().chain(cells).chain([format!("{:32}", q.meaning())]));
     }
     text += &t.text();
-    best.warnings.iter().for_each(|warning| text += &wrapped("note: ", warning));
+    best.notes.iter().for_each(|note| text += &wrapped("note: ", &note.to_string()));
     let others = results.len() - 1;
     if others > 0 {
         text += &format!("{others} other models: --verbose\n");
@@ -102,14 +103,14 @@ pub fn table(results: &[Inference]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use grainlab_core::results::{Estimate, Quantities};
     use grainlab_emt::{Calibration, Observation, StrainRatio};
-    use grainlab_msgs::boundary::{ModelResult, Quantities};
 
     fn s1(modulus_error: f64) -> Inference {
         let observation =
             Observation::from_g12_g13_theta(121.71e6, 127.37e6, 144.38e6, 50e3, StrainRatio::given(-0.0623))
                 .with_relative_error(modulus_error);
-        Inference::of(
+        Inference::new(
             "ratio",
             "paper",
             &grainlab_emt::model("ratio").unwrap().infer(&observation, &Calibration::PAPER),
@@ -118,13 +119,13 @@ mod tests {
 
     #[test]
     fn the_text_table_leaves_out_what_no_model_infers() {
-        let failed = || Inference::from(ModelResult::unknown("ours", "paper", vec!["because".into()]));
+        let failed = || Inference::from(Estimate::unknown("ours", "paper", vec![Note::no_answer("because")]));
         let text = table(&[s1(0.01), failed()]);
         let words: Vec<&str> = text.lines().next().unwrap().split_whitespace().collect();
         assert_eq!(words, ["model", "calibration", "k", "sigma", "k_hat", "sigma", "eps", "sigma", "status"]);
         assert!(text.contains("5.73") && text.ends_with("  ours: because\n"), "{text}");
         let mut with_z = s1(0.01);
-        with_z.result.values = Quantities::of(|q| (q == InferredQuantity::Z).then_some(5.9));
+        with_z.estimate.values = Quantities::from_fn(|q| (q == InferredQuantity::Z).then_some(5.9));
         assert!(table(&[with_z, failed()]).contains("  5.900"), "one model that knows z brings its column");
     }
 
@@ -132,9 +133,9 @@ mod tests {
     fn every_exact_cell_stands_under_its_name() {
         let mut r = s1(0.01);
         let [z, eps_stiffness] = [InferredQuantity::Z, InferredQuantity::EpsStiffness].map(|q| q as usize);
-        let found = &mut r.result;
+        let found = &mut r.estimate;
         (found.values.0[z], found.values.0[eps_stiffness]) = (Some(5.9), Some(0.02));
-        (found.sigma_model.0[z], found.sigma_model.0[eps_stiffness]) = (Some(0.04), None);
+        found.covariance_model.as_mut().unwrap()[(z, z)] = 0.25;
         found.interval.bounds.0[eps_stiffness] = Some([-0.01, 0.05]);
         (found.chi_square, found.degrees_of_freedom) = (Some(1.5), Some(2));
         let mut line = CsvText::default();
@@ -146,8 +147,8 @@ mod tests {
         assert_eq!(cells.len(), columns.len());
         let cell = |name| cells[columns.iter().position(|c| *c == name).unwrap()];
         assert_eq!((cell("model"), cell("status")), ("ratio", "ok"));
-        assert_eq!((cell("z"), cell("sigma_z"), cell("eps_stiffness")), ("5.9", "", "0.02"));
-        assert_eq!((cell("sigma_model_z"), cell("sigma_model_eps_stiffness")), ("0.04", ""));
+        assert_eq!((cell("z"), cell("sigma_z"), cell("eps_stiffness")), ("5.9", "0", "0.02"));
+        assert_eq!((cell("sigma_model_z"), cell("sigma_model_eps_stiffness")), ("0.5", "0"));
         assert_eq!((cell("eps_stiffness_low"), cell("eps_stiffness_high")), ("-0.01", "0.05"));
         assert_eq!((cell("chi_square"), cell("degrees_of_freedom")), ("1.5", "2"));
         assert_eq!(cell("k_low").parse::<f64>().ok(), r.interval.bounds[InferredQuantity::K].map(|b| b[0]));
@@ -155,7 +156,7 @@ mod tests {
             cell("eps_high").parse::<f64>().ok(),
             r.interval.bounds[InferredQuantity::Eps].map(|b| b[1])
         );
-        assert_eq!(cell("sigma_eps").parse::<f64>().ok(), r.sigma[InferredQuantity::Eps]);
+        assert_eq!(cell("sigma_eps").parse::<f64>().ok(), r.sigma(InferredQuantity::Eps));
         assert!(cell("condition_number").parse::<f64>().unwrap() >= 1.0);
     }
 }

@@ -1,12 +1,12 @@
 //! One measured packing: the output of `grainlab analyze`, and an entry of `summary.json`.
 
 use crate::probe::ProbeView;
-use crate::quantities::entries;
-use grainlab_core::Packing;
+use crate::quantities::{NoteView, entries};
+use grainlab_core::notes::{Note, texts};
 use grainlab_core::quantities;
 use grainlab_core::quantity::{Quantity, Shape::Scalar};
 use grainlab_core::results::{PackingReport, QUANTITIES, warnings};
-use grainlab_experiment::PathPosition;
+use grainlab_core::{Packing, PathPosition};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 /// A report, and its source.
@@ -22,8 +22,8 @@ pub struct MeasuredPacking {
     pub position: Option<PathPosition>,
     /// Wall time of the measurement, s; `None` if it was read from a recording.
     pub seconds: Option<f64>,
-    /// Warnings about the packing and its measurement, one line each.
-    pub warnings: Vec<String>,
+    /// Notes on the packing and its measurement.
+    pub notes: Vec<Note>,
     /// Details of the probe, if the stiffness was measured by one.
     pub probe: Option<ProbeView>,
 }
@@ -33,9 +33,9 @@ pub static ORIGIN: &[Quantity<MeasuredPacking>] = quantities! { MeasuredPacking:
     "source" "" "" "file, recording or topic" Scalar, |m| m.source.clone();
     "step" "" "1" "solver step of the packing" Scalar, |m| m.step;
     "phase" "" "1" "number of the phase of the scene, from 1; 0 for the packing that a run started from"
-        Scalar, |m| m.position.map(|p| p.phase as u64);
+        Scalar, |m| m.position.as_ref().map(|p| p.phase as u64);
     "end_of_phase" "" "" "whether the phase met its end conditions; a packing within a phase need not be at rest"
-        Scalar, |m| m.position.map(|p| p.end_of_phase);
+        Scalar, |m| m.position.as_ref().map(|p| p.end_of_phase);
     "wall_time_s" "" "s" "wall time of the measurement" Scalar, |m| m.seconds;
 };
 
@@ -43,24 +43,17 @@ impl MeasuredPacking {
     /// The report of a packing of this source; the other fields are empty.
     pub fn new(source: String, report: PackingReport) -> Self {
         let step = report.step;
-        Self { source, step, report, position: None, seconds: None, warnings: Vec::new(), probe: None }
+        Self { source, step, report, position: None, seconds: None, notes: Vec::new(), probe: None }
     }
 
-    /// Sets the position in the run, and removes the strain where that position does not tell it.
+    /// Adds the position of the packing, the notes of its reader, and the warnings about the packing and its measurement, each
+    /// once.
     #[must_use]
-    pub fn at(mut self, position: Option<PathPosition>) -> Self {
-        self.position = position;
-        position.inspect(|p| p.judge_strain(&mut self.report));
-        self
-    }
-
-    /// Adds the notes of the packing's reader, and the warnings about the packing and its measurement, each once.
-    #[must_use]
-    pub fn doubted(mut self, packing: &Packing, notes: &[String]) -> Self {
-        let found =
-            self.position.and_then(|p| p.warning()).into_iter().chain(warnings(packing, &self.report));
-        let new: Vec<_> = found.filter(|w| !notes.contains(w)).collect();
-        self.warnings.extend(notes.iter().cloned().chain(new));
+    pub fn doubted(mut self, packing: &Packing, remarks: &[String]) -> Self {
+        self.position.clone_from(&packing.path);
+        let found = warnings(packing, &self.report).into_iter();
+        self.notes.extend(remarks.iter().cloned().map(Note::remark));
+        self.notes.extend(found.filter(|note| !remarks.contains(&note.to_string())));
         self
     }
 }
@@ -70,7 +63,8 @@ impl Serialize for MeasuredPacking {
         let mut map = serializer.serialize_map(None)?;
         entries(&mut map, ORIGIN, self)?;
         entries(&mut map, QUANTITIES, &self.report)?;
-        map.serialize_entry("warnings", &self.warnings)?;
+        map.serialize_entry("warnings", &texts(&self.notes))?;
+        map.serialize_entry("notes", &self.notes.iter().map(NoteView).collect::<Vec<_>>())?;
         map.serialize_entry("probe", &self.probe)?;
         map.end()
     }
@@ -80,8 +74,7 @@ impl Serialize for MeasuredPacking {
 pub(crate) mod tests {
     use super::*;
     use crate::printer::Printed;
-    use grainlab_core::{Cell, Contact, Vec3};
-    use grainlab_experiment::StrainOrigin;
+    use grainlab_core::{Cell, Contact, StrainOrigin, Vec3};
     use grainlab_micromechanics::{Settings, analyze};
 
     /// One grain touching its own images along the three edges, or none of them.
@@ -138,8 +131,8 @@ pub(crate) mod tests {
     #[test]
     fn a_strain_that_was_not_counted_is_unknown() {
         let at = |strain_origin| {
-            let position = PathPosition { phase: 1, end_of_phase: true, strain_origin };
-            serde_json::to_value(measured(&lattice(true)).at(Some(position))).unwrap()["strain"].clone()
+            let path = Some(PathPosition::new(1, false, strain_origin, None));
+            serde_json::to_value(measured(&Packing { path, ..lattice(true) })).unwrap()["strain"].clone()
         };
         assert!(at(StrainOrigin::Unknown).is_null());
         for origin in [StrainOrigin::FirstStep, StrainOrigin::Reference] {

@@ -9,7 +9,7 @@ use grainlab_core::results::{PackingReport, QUANTITIES};
 
 impl Printed for MeasuredPacking {
     fn warnings(&self) -> Vec<String> {
-        self.warnings.iter().map(|w| format!("{}, step {}: {w}", self.source, self.step)).collect()
+        self.notes.iter().map(|w| format!("{}, step {}: {w}", self.source, self.step)).collect()
     }
 
     fn text(&self) -> String {
@@ -63,7 +63,7 @@ pub(crate) fn text(m: &MeasuredPacking) -> String {
         }
     }
     text += &indented(&table.text());
-    m.warnings.iter().for_each(|warning| text += &wrapped("  note: ", warning));
+    m.notes.iter().for_each(|note| text += &wrapped("  note: ", &note.to_string()));
     text
 }
 

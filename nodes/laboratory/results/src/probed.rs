@@ -34,7 +34,7 @@ fn inputs_and_truth() -> impl Iterator<Item = &'static Quantity<PackingReport>> 
 impl Printed for Probed {
     fn warnings(&self) -> Vec<String> {
         let p = &self.packing;
-        let of_waves = self.acoustic.iter().flat_map(AcousticReport::warnings);
+        let of_waves = self.acoustic.iter().flat_map(AcousticReport::notes);
         p.warnings()
             .into_iter()
             .chain(of_waves.map(|w| format!("{}, step {}: {w}", p.source, p.step)))

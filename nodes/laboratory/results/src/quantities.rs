@@ -1,8 +1,10 @@
 //! Results as JSON and CSV, from the tables of quantities.
 
 use grainlab_console::Cell;
+use grainlab_core::notes::Note;
 use grainlab_core::quantity::{Quantity, Shape, Value};
 use serde::ser::{Serialize, SerializeMap, Serializer};
+use std::collections::BTreeMap;
 
 /// Adds every quantity of `result` to a JSON object.
 pub(crate) fn entries<R, M: SerializeMap>(
@@ -51,6 +53,22 @@ pub fn typed_cells<'a, R: 'static>(
             Value::Counts(counts) => counts.into_iter().map(|n| Cell::Count(n.into())).collect(),
         }
     })
+}
+
+/// A note in JSON: code, status, names, numbers by name, sentence.
+pub(crate) struct NoteView<'a>(pub(crate) &'a Note);
+
+impl Serialize for NoteView<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let note = self.0;
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("code", note.code())?;
+        map.serialize_entry("severity", note.severity().name())?;
+        map.serialize_entry("subjects", note.subjects())?;
+        map.serialize_entry("numbers", &note.named_values().collect::<BTreeMap<_, _>>())?;
+        map.serialize_entry("text", &note.to_string())?;
+        map.end()
+    }
 }
 
 /// A value in JSON: null if it is unknown, rows of a stiffness as arrays.

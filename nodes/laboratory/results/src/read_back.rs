@@ -10,6 +10,7 @@ use crate::acoustic::AcousticReport;
 use crate::inference::Inference;
 use crate::measured_packing::MeasuredPacking;
 use crate::measurements::Measurement;
+use grainlab_core::notes::Note;
 use grainlab_core::results::report_warnings;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Report, Topic, TypeInfo, msg, topics};
@@ -112,9 +113,9 @@ pub(crate) struct EngineRange {
 }
 
 fn engines(about: &BTreeMap<u64, About>) -> Vec<EngineRange> {
-    let simulated = about.values().filter(|a| a.position.is_some());
-    let named =
-        simulated.map(|a| (a.engine.as_ref().map_or("grainlab".to_owned(), ToString::to_string), a.step));
+    let simulated = about.values().filter_map(|a| Some((a.position.as_ref()?, a.step)));
+    let named = simulated
+        .map(|(path, step)| (path.engine.as_ref().map_or("grainlab".to_owned(), ToString::to_string), step));
     let mut found: Vec<EngineRange> =
         named.map(|(engine, from_step)| EngineRange { engine, from_step }).collect();
     found.dedup_by(|next, known| next.engine == known.engine);
@@ -131,28 +132,28 @@ pub(crate) struct WithinPhases {
     pub(crate) moduli: usize,
 }
 
+/// Topics with results.
+const RESULTS: [Topic; 6] = [
+    topics::PACKING,
+    topics::PACKING_REPORT,
+    topics::MODULI,
+    topics::WAVE_SPEEDS,
+    topics::MICROSTRUCTURE,
+    topics::DIAGNOSTICS,
+];
+
+fn topic_of(channel: &ChannelInfo) -> Option<&'static Topic> {
+    Topic::of_channel(&channel.topic, &channel.ros_type).filter(|t| RESULTS.iter().any(|r| r.name == t.name))
+}
+
 /// Reads a recording back.
 pub fn read(recording: &Recording) -> ReadBack {
-    let mut back = ReadBack::default();
     recording.differing().iter().for_each(|line| grainlab_console::say!("grainlab: {line}"));
-    let wanted = [
-        topics::PACKING,
-        topics::PACKING_REPORT,
-        topics::MODULI,
-        topics::WAVE_SPEEDS,
-        topics::MICROSTRUCTURE,
-        topics::DIAGNOSTICS,
-    ];
-    let of = |c: &ChannelInfo| {
-        Topic::of_channel(&c.topic, &c.ros_type).filter(|t| wanted.iter().any(|w| w.name == t.name))
-    };
-    let channels = recording.channels();
-    let names = channels.iter().filter(|c| of(c).is_some()).map(|c| c.topic.clone());
-    let authors = Names::of(recording);
-    back.strangers = strangers::strangers(recording);
+    let mut back = ReadBack { strangers: strangers::strangers(recording), ..ReadBack::default() };
     back.dispute(strangers::disputes(recording));
     back.complaints.extend(recording.ended_early());
-    let mut about: BTreeMap<u64, About> = BTreeMap::new();
+    let channels = recording.channels();
+    let names = channels.iter().filter(|c| topic_of(c).is_some()).map(|c| c.topic.clone());
     let messages = match recording.messages(&Selection::topics(names)) {
         Ok(messages) => messages,
         Err(error) => {
@@ -160,45 +161,11 @@ pub fn read(recording: &Recording) -> ReadBack {
             return back;
         }
     };
-    let mut run = OneRun::default();
-    if let Err(sign) = OneRun::scenes(recording) {
-        return ReadBack::of_several_runs(recording, sign);
-    }
-    for message in messages {
-        let Some(topic) = of(&message.channel) else { continue };
-        let name = &message.channel.topic;
-        if topic.name == topics::DIAGNOSTICS.name {
-            if let Err(problem) = reports(&mut back.reports, &message) {
-                back.complaints.push(complaint(&message, &problem));
-            }
-            continue;
-        }
-        let by = authors.node(name, message.log_time);
-        let step = match enter(&mut about, &mut run, topic, &message, by) {
-            Ok(step) => step,
-            Err(Unused::OfAnotherRun(sign)) => return ReadBack::of_several_runs(recording, sign),
-            Err(Unused::Unreadable(problem)) => {
-                back.complaints.push(complaint(&message, &problem));
-                continue;
-            }
-            // It is in the recording all the same.
-            Err(Unused::Refused(step, problem)) => {
-                back.refused += 1;
-                back.complaints.push(complaint(&message, &problem));
-                step
-            }
-        };
-        if topic.name != topics::PACKING.name {
-            back.results.entry(topic.name).or_default().insert(step);
-            continue;
-        }
-        let Some(about) = about.get(&step) else { continue };
-        back.packings += 1;
-        back.saved_step = if about.position.is_some() { Some(step) } else { back.saved_step };
-    }
-    if let Some(sign) = about.values().find_map(About::contradiction) {
-        return ReadBack::of_several_runs(recording, sign);
-    }
+    let sorted = OneRun::scenes(recording).and_then(|()| back.sort(messages, &Names::of(recording)));
+    let about = match sorted {
+        Ok(about) => about,
+        Err(sign) => return ReadBack::of_several_runs(recording, sign),
+    };
     back.engines = engines(&about);
     let source = recording.path().display().to_string();
     let is_of_earlier_version =
@@ -209,47 +176,11 @@ pub fn read(recording: &Recording) -> ReadBack {
              `grainlab analyze {source}` measures the packings again"
         ));
     }
-    for (step, mut about) in about {
-        back.note_unanswered(step, &about);
-        back.dispute(about.dispute());
-        let jammed = about.report.as_ref().is_some_and(|report| report.stiffness().is_some());
-        if about.is_within_phase() {
-            back.within_phases.packings += 1;
-            back.within_phases.structures += usize::from(about.report.is_some());
-            back.within_phases.moduli += usize::from(jammed);
-            continue;
-        }
-        let ((results, others), speeds, notes) = (about.results(), about.speeds(), about.notes());
-        back.of_instruments.extend(others);
-        match (about.packing, about.report) {
-            (Some(_), Some(report)) => {
-                let mut measured = MeasuredPacking::new(source.clone(), report).at(about.position);
-                let report = &measured.report;
-                measured.warnings =
-                    report.elasticity.as_ref().err().map(ToString::to_string).into_iter().collect();
-                measured.warnings.extend(report_warnings(report));
-                measured.warnings.extend(notes);
-                let (grains, density) = (report.contacts.grains, report.bulk_density());
-                let mut acoustic = speeds.into_iter().map(|(measurement, reading)| AcousticReport {
-                    measurement,
-                    ..AcousticReport::new(grains, density, reading)
-                });
-                let first = acoustic.next();
-                back.states.push(InvertedPacking {
-                    packing: measured,
-                    acoustic: first,
-                    further_acoustic: acoustic.collect(),
-                    results,
-                });
-            }
-            // Data of an external instrument do not belong to a packing of the run.
-            (None, None) if step == 0 => {}
-            (None, _) => back.complaints.push(format!("the packing of step {step} is not in the recording")),
-            (_, None) => {
-                back.not_analysed += 1;
-                if !is_of_earlier_version {
-                    back.complaints.push(format!("the packing of step {step} was not analysed"));
-                }
+    for (step, about) in about {
+        if !back.add(step, about, &source) {
+            back.not_analysed += 1;
+            if !is_of_earlier_version {
+                back.complaints.push(format!("the packing of step {step} was not analysed"));
             }
         }
     }
@@ -258,6 +189,96 @@ pub fn read(recording: &Recording) -> ReadBack {
 }
 
 impl ReadBack {
+    /// Sorts messages by the packings that they are about.
+    ///
+    /// # Errors
+    /// A sign that the messages are of several runs.
+    fn sort(
+        &mut self,
+        messages: impl Iterator<Item = Message>,
+        authors: &Names,
+    ) -> Result<BTreeMap<u64, About>, RunSign> {
+        let (mut all, mut run) = (BTreeMap::new(), OneRun::default());
+        for message in messages {
+            let Some(topic) = topic_of(&message.channel) else { continue };
+            if topic.name == topics::DIAGNOSTICS.name {
+                if let Err(problem) = reports(&mut self.reports, &message) {
+                    self.complaints.push(complaint(&message, &problem));
+                }
+                continue;
+            }
+            let by = authors.node(&message.channel.topic, message.log_time);
+            let step = match enter(&mut all, &mut run, topic, &message, by) {
+                Ok(step) => step,
+                Err(Unused::OfAnotherRun(sign)) => return Err(sign),
+                Err(Unused::Unreadable(problem)) => {
+                    self.complaints.push(complaint(&message, &problem));
+                    continue;
+                }
+                // It is in the recording all the same.
+                Err(Unused::Refused(step, problem)) => {
+                    self.refused += 1;
+                    self.complaints.push(complaint(&message, &problem));
+                    step
+                }
+            };
+            if topic.name != topics::PACKING.name {
+                self.results.entry(topic.name).or_default().insert(step);
+            } else if let Some(about) = all.get(&step) {
+                self.packings += 1;
+                self.saved_step = if about.position.is_some() { Some(step) } else { self.saved_step };
+            }
+        }
+        all.values().find_map(About::contradiction).map_or(Ok(all), Err)
+    }
+
+    /// Adds what is known about the packing of `step`; false if the packing has no report.
+    fn add(&mut self, step: u64, mut about: About, source: &str) -> bool {
+        self.note_unanswered(step, &about);
+        self.dispute(about.dispute());
+        if about.is_within_phase() {
+            let is_jammed = about.report.as_ref().is_some_and(|report| report.stiffness().is_some());
+            self.within_phases.packings += 1;
+            self.within_phases.structures += usize::from(about.report.is_some());
+            self.within_phases.moduli += usize::from(is_jammed);
+            return true;
+        }
+        let ((results, others), speeds, notes) = (about.results(), about.speeds(), about.notes());
+        self.of_instruments.extend(others);
+        match (about.packing, about.report) {
+            (Some(_), Some(report)) => {
+                let why_no_stiffness = report.elasticity.as_ref().err().map(Note::from);
+                let notes =
+                    why_no_stiffness.into_iter().chain(report_warnings(&report)).chain(notes).collect();
+                let (grains, density) = (report.contacts.grains, report.bulk_density());
+                let mut acoustic = speeds.into_iter().map(|(measurement, reading)| AcousticReport {
+                    measurement,
+                    ..AcousticReport::new(grains, density, reading)
+                });
+                let packing = MeasuredPacking {
+                    position: about.position,
+                    notes,
+                    ..MeasuredPacking::new(source.to_owned(), report)
+                };
+                let (first, further) = (acoustic.next(), acoustic.collect());
+                self.states.push(InvertedPacking {
+                    packing,
+                    acoustic: first,
+                    further_acoustic: further,
+                    results,
+                });
+                true
+            }
+            // Data of an external instrument do not belong to a packing of the run.
+            (None, None) if step == 0 => true,
+            (None, _) => {
+                self.complaints.push(format!("the packing of step {step} is not in the recording"));
+                true
+            }
+            (Some(_), None) => false,
+        }
+    }
+
     /// Counts data without an answer, and answers without their data. Those of packings within a phase may have none.
     fn note_unanswered(&mut self, step: u64, about: &About) {
         for (topic, data) in about.data.iter().filter(|_| step > 0 && !about.is_within_phase()) {

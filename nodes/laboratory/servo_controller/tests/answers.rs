@@ -4,7 +4,7 @@ use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::{to_cdr, topics};
 use grainlab_node_kit::{
-    Actor, Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Subscription, run_until,
+    Actor, Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Statistics, Subscription, run_until,
 };
 use grainlab_servo::{ServoInput, ServoRequest};
 use grainlab_servo_controller::{Refusal, ServoController, answer};

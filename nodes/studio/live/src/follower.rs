@@ -5,8 +5,8 @@ use grainlab_console::Failure;
 use grainlab_msgs::msg::{Microstructure, Packing, PackingReport, RunState, Stress};
 use grainlab_msgs::{Message, Topic, from_cdr, topics};
 use grainlab_node_kit::{
-    BulkSubscription, Bus, BusError, DdsBus, Demand, Identity, Names, Network, Participant, Peer, PeerWatch,
-    RunId, SampleInfo, Scope, Subscription, run_of,
+    BulkSubscription, Bus, BusError, DdsBus, Demand, Graph, Identity, Names, Network, Participant, Peer,
+    PeerWatch, RunId, SampleInfo, Scope, Subscription, run_of,
 };
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};

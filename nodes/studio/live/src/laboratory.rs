@@ -141,12 +141,12 @@ impl Laboratory {
         if *step != message.source_step {
             (*step, *known) = (message.source_step, Vec::new());
         }
-        for result in results {
+        for estimate in results {
             // A name tells several measurements of a packing apart.
             let measurement = (!message.name.is_empty()).then(|| Measurement::named(&message.name));
             let found = Inference {
                 origin: Origin { source: Some(message.source.clone()), by: None, measurement },
-                result,
+                estimate,
             };
             if known.len() < ESTIMATES && !known.contains(&found) {
                 known.push(found);

@@ -2,6 +2,7 @@
 
 use crate::{error, parallel, posterior};
 use grainlab_command::in_memory::{self, By, InvertedRow};
+use grainlab_core::notes::texts;
 use grainlab_core::results::InferredQuantity;
 use grainlab_msgs::Exit;
 use grainlab_results::Inference;
@@ -45,27 +46,27 @@ fn answers<'py>(py: Python<'py>, rows: &[InvertedRow]) -> PyResult<Bound<'py, Py
         let values: Vec<f64> = rows.iter().map(|row| value(&row.inference).unwrap_or(f64::NAN)).collect();
         dict.set_item(key, values.into_pyarray(py))
     };
-    let texts = |key: &str, value: &dyn Fn(&InvertedRow) -> String| {
+    let words = |key: &str, value: &dyn Fn(&InvertedRow) -> String| {
         py.check_signals()?;
         dict.set_item(key, rows.iter().map(value).collect::<Vec<_>>())
     };
     if rows.iter().any(|row| row.sample.is_some()) {
-        texts("sample", &|row| row.sample.clone().unwrap_or_default())?;
+        words("sample", &|row| row.sample.clone().unwrap_or_default())?;
     }
-    texts("model", &|row| row.inference.model.clone())?;
-    texts("calibration", &|row| row.inference.calibration.clone())?;
+    words("model", &|row| row.inference.model.clone())?;
+    words("calibration", &|row| row.inference.calibration.clone())?;
     for quantity in InferredQuantity::ALL {
         let (name, at) = (quantity.name(), quantity as usize);
         numbers(name.to_owned(), &|row| row.values.0[at])?;
-        numbers(format!("{name}_sigma"), &|row| row.sigma.0[at])?;
+        numbers(format!("{name}_sigma"), &|row| row.sigma(InferredQuantity::ALL[at]))?;
         numbers(format!("{name}_low"), &|row| row.interval.bounds.0[at].map(|b| b[0]))?;
         numbers(format!("{name}_high"), &|row| row.interval.bounds.0[at].map(|b| b[1]))?;
     }
     numbers("chi_square".to_owned(), &|row| row.chi_square)?;
-    numbers("gamma_over_delta".to_owned(), &|row| row.gamma_over_delta)?;
-    texts("status", &|row| row.inference.status.to_owned())?;
-    texts("reason", &|row| row.inference.warnings.join("; "))?;
-    dict.set_item("warnings", rows.iter().map(|row| row.inference.warnings.clone()).collect::<Vec<_>>())?;
+    numbers("gamma_over_delta".to_owned(), &|row| row.gamma.map(|gamma| gamma.value))?;
+    words("status", &|row| row.inference.status.to_string())?;
+    words("reason", &|row| texts(&row.inference.notes).join("; "))?;
+    dict.set_item("warnings", rows.iter().map(|row| texts(&row.inference.notes)).collect::<Vec<_>>())?;
     dict.set_item("contradictions", rows.iter().map(|row| row.contradictions.clone()).collect::<Vec<_>>())?;
     dict.set_item("failed", rows.iter().map(|row| row.failed.map_or(0, Exit::code)).collect::<Vec<_>>())?;
     Ok(dict)

@@ -7,6 +7,7 @@ use crate::parallel;
 use crate::values;
 use grainlab_command::in_memory;
 use grainlab_core::Vec3;
+use grainlab_core::notes::texts;
 use grainlab_core::results::QUANTITIES;
 use grainlab_micromechanics::network::Springs;
 use grainlab_micromechanics::{Settings, analyze as measure};
@@ -51,10 +52,9 @@ pub(crate) fn analyze_one<'py>(
     let owner = packing.clone().unbind();
     let found =
         parallel::detach(py, move |_| measure(owner.get().packing(), &settings))?.map_err(error::physics)?;
-    let (packing, position) = (packing.get().packing(), packing.get().position());
     let without = found.why_no_stiffness();
-    let found = MeasuredPacking::new(String::new(), found.report).at(position).doubted(packing, &[]);
-    let doubts = found.warnings.iter().cloned().chain(without).collect();
+    let found = MeasuredPacking::new(String::new(), found.report).doubted(packing.get().packing(), &[]);
+    let doubts = texts(&found.notes).into_iter().chain(without).collect();
     Ok((values::quantities(py, QUANTITIES, &found.report)?, doubts))
 }
 

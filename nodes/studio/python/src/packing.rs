@@ -3,7 +3,6 @@
 use crate::arrays::{copied, field, matrix, numbers, one, row, scalars, vectors};
 use crate::parallel;
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3, contact_search};
-use grainlab_experiment::PathPosition;
 use grainlab_msgs::boundary::{packing_header, packing_message};
 use grainlab_msgs::{from_cdr, msg, to_cdr};
 use grainlab_recordings::import::Imported;
@@ -27,8 +26,6 @@ use std::sync::atomic::AtomicBool;
 #[pyclass(name = "Packing", module = "grainlab", frozen)]
 pub(crate) struct PyPacking {
     imported: Imported,
-    /// On the loading path of its run.
-    position: Option<PathPosition>,
 }
 
 type Array<'py, T, D> = Bound<'py, PyArray<T, D>>;
@@ -37,10 +34,6 @@ impl PyPacking {
     pub(crate) fn new(packing: Packing, source: String, notes: Vec<String>, run_state: Vec<u8>) -> Self {
         let (header, step) = (packing_header(&packing), packing.step);
         Imported { packing, header, step, run_state, source, rounding: None, notes }.into()
-    }
-
-    pub(crate) fn position(&self) -> Option<PathPosition> {
-        self.position
     }
 
     pub(crate) fn imported(&self) -> &Imported {
@@ -54,8 +47,7 @@ impl PyPacking {
 
 impl From<Imported> for PyPacking {
     fn from(imported: Imported) -> Self {
-        let position = PathPosition::of(&imported.run_state);
-        Self { imported, position }
+        Self { imported }
     }
 }
 
@@ -193,13 +185,13 @@ impl PyPacking {
     /// Number of the phase of its scene, from 1; 0 for the packing that a run started from; None for a packing of no run.
     #[getter]
     fn phase(&self) -> Option<usize> {
-        self.position.map(|position| position.phase)
+        self.packing().path.as_ref().map(|path| path.phase)
     }
 
     /// True if the phase met its end conditions at this packing; one within a phase need not be at rest. None for a packing of no run.
     #[getter]
     fn end_of_phase(&self) -> Option<bool> {
-        self.position.map(|position| position.end_of_phase)
+        self.packing().path.as_ref().map(|path| path.end_of_phase)
     }
 
     /// Friction coefficient in force; may be infinite.

@@ -53,9 +53,9 @@ impl Run {
     fn warnings(&self) -> Html {
         let mut seen = BTreeSet::new();
         let of_states = self.states.iter().flat_map(|s| {
-            s.packing.warnings.iter().cloned().chain(s.acoustics().flat_map(AcousticReport::warnings))
+            s.packing.notes.iter().cloned().chain(s.acoustics().flat_map(AcousticReport::notes))
         });
-        let of_states = of_states.filter(|w| seen.insert(w.clone()));
+        let of_states = of_states.map(|note| note.to_string()).filter(|text| seen.insert(text.clone()));
         let strangers = match self.summary.strangers.len() {
             0 => None,
             n => Some(format!(

@@ -1,6 +1,7 @@
 //! Values inferred from moduli and wave speeds, with those that were counted.
 
 use crate::run::Run;
+use grainlab_core::notes::Status;
 use grainlab_core::results::InferredQuantity;
 use grainlab_msgs::topics::PACKING_REPORT;
 use grainlab_page::plot::{Axis, Estimated, Figure, Intervals, Line, Marker, Point, Series};
@@ -50,7 +51,7 @@ fn plots(results: &[(&Inference, Vec<Judged>)], is_first_apart: bool) -> Html {
                 interval: found.and_then(|j| j.interval),
                 text: found.map_or_else(|| "not inferred".to_owned(), |j| j.value()),
                 below: found.filter(|_| n == 0 && is_first_apart).map_or_else(String::new, |j| j.distance()),
-                hollow: e.status != "ok",
+                hollow: e.status != Status::Ok,
             }
         });
         let digits = q.digits();
@@ -115,7 +116,7 @@ fn over_counted(states: &[InvertedPacking]) -> Html {
 /// Cells of the inferred quantities and of their model; empty without an estimate.
 fn of_best(best: Option<&Inference>, by: String) -> impl Iterator<Item = Cell> {
     let cells = InferredQuantity::countable().map(move |q| {
-        let sigma = plus_minus(best.and_then(|b| b.sigma[q]), q.digits());
+        let sigma = plus_minus(best.and_then(|b| b.sigma(q)), q.digits());
         Cell::number(fixed(best.and_then(|b| b.values[q]), q.digits()) + &sigma)
     });
     cells.chain([Cell::text(by)])
@@ -155,7 +156,7 @@ impl Run {
         }
         let level = state.results.iter().find_map(|e| e.interval.level).unwrap_or(0.95);
         let which = if self.states.len() > 1 { " Of the last state." } else { "" };
-        let hollow = results[0].0.status != "ok";
+        let hollow = results[0].0.status != Status::Ok;
         let hollow = if hollow { " The point is hollow: the estimate has a warning." } else { "" };
         let caption = format!(
             "Points: inferred, ± one standard deviation, with intervals of {:.0} %, which assume the errors of the data that the inversion was given. Vertical \
@@ -174,7 +175,7 @@ impl Run {
             "The inversion was given {}. It was not given the contacts.",
             findings::data(results[0].0)
         );
-        let notes = state.results.iter().flat_map(|e| e.warnings.iter().map(move |w| (e, w)));
+        let notes = state.results.iter().flat_map(|e| e.notes.iter().map(move |w| (e, w)));
         let warnings = list(notes.map(|(e, w)| format!("{}: {w}", name(e))));
         let notes = details("Notes of the models", warnings);
         paragraph(about) + over_counted(&self.states) + best + others + notes + self.of_instruments()
@@ -199,7 +200,7 @@ impl Run {
         let header = measured.map(str::to_owned).chain(inferred).chain(["by".to_owned()]);
         let row = |s: &InvertedPacking| {
             let r = &s.packing.report;
-            let phase = s.packing.position.filter(|p| p.phase > 0).map_or_else(String::new, |p| {
+            let phase = s.packing.position.as_ref().filter(|p| p.phase > 0).map_or_else(String::new, |p| {
                 self.timeline.phase_name(p.phase as u32 - 1 + self.timeline.first_phase())
             });
             let best = recommended(s);

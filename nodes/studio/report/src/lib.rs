@@ -3,8 +3,8 @@
 //! - [`Run`]: what a report is made of, from the files of a run; `timeline`, `phased`, `decimated`: against time, in one pass
 //!   over the recording; `summary_file`: how the run ended
 //! - `page`: the page of a run; `against_time`, `structure`, `moduli`, `inferred`, `waves`, `energy`, `health`: its sections
-//! - [`overview`]: the page of many runs; `outliers`: values far from those of runs alike; `settings`, `over_settings`: in which
-//!   settings they differ, and their quantities over these
+//! - [`overview`]: the page of many runs; `numbers`: the columns of its table; `outliers`: values far from those of runs alike;
+//!   `settings`, `over_settings`: in which settings they differ, and their quantities over these
 //! - [`Timeline`], [`curves`], [`STYLE`], [`SCRIPT`]: what the page of a running laboratory has in common with a report
 //! - [`series_page`]: the page of the wave speeds of a sample over pressure
 //! - [`write_report`]: the file
@@ -16,6 +16,7 @@ mod health;
 mod inferred;
 mod many;
 mod moduli;
+mod numbers;
 mod outliers;
 mod over_settings;
 mod page;

@@ -44,8 +44,7 @@ pub(crate) struct OverSettings<'a> {
 impl<'a> OverSettings<'a> {
     /// The runs, if they differ in one setting or two, of which one is a number and the other has few values.
     pub(crate) fn of(all: &'a [Quantities<'a>]) -> Option<Self> {
-        let is_whole =
-            |run: &Run| run.summary.exit == Some(0) && !run.is_incomplete() && run.last().is_some();
+        let is_whole = |run: &Run| run.is_complete() && run.last().is_some();
         let whole: Vec<&Quantities<'_>> = all.iter().filter(|(run, _)| is_whole(run)).collect();
         let mut settings = differing(&whole.iter().map(|(run, _)| *run).collect::<Vec<_>>());
         settings.sort_by_key(|s| std::cmp::Reverse(s.numbers().map_or(0, |_| s.different())));

@@ -1,7 +1,7 @@
 //! The page of one run: one file, without references to others.
 
 use crate::energy;
-use crate::run::Run;
+use crate::run::{Run, pressure_range};
 use grainlab_console::count;
 use grainlab_core::results::InferredQuantity;
 use grainlab_page::{
@@ -115,11 +115,8 @@ impl Run {
         let scene = self.scene_name();
         match (self.last(), &self.timeline.last) {
             (Some(s), _) => {
-                let pressures = self.states.iter().map(|s| s.packing.report.pressure() / 1e3);
-                let [low, high] = pressures.fold([f64::INFINITY, 0.0], |[l, h], p| [p.min(l), p.max(h)]);
-                let [low, high] = [low, high].map(|p| three_digits(p, 2));
-                let range = if low == high { String::new() } else { format!("{low} to ") };
-                format!("{scene}: {} grains at {range}{high} kPa", s.packing.report.contacts.grains)
+                let range = pressure_range(&self.states, 2);
+                format!("{scene}: {} grains at {range} kPa", s.packing.report.contacts.grains)
             }
             (None, Some(packing)) => format!("{scene}: {} grains, not measured", packing.grains()),
             (None, None) => format!("{scene}: no packing"),
@@ -168,7 +165,7 @@ fn cards(state: &InvertedPacking) -> Html {
             "inferred {{ value }}{% if error %} <span class=\"error\">{{ error }}</span>{% endif %}{% if status != \"ok\" %} ({{ status }}){% endif %}",
             value => j.value(),
             error => format!("({})", j.distance()),
-            status => best.status,
+            status => best.status.name(),
         )
     };
     let counted = InferredQuantity::countable()

@@ -2,6 +2,7 @@
 
 use crate::summary_file::SummaryFile;
 use crate::timeline::Timeline;
+use grainlab_page::three_digits;
 use grainlab_recordings::{METADATA_RECORD, Recording, SeveralRuns, input, scenes};
 use grainlab_results::Inference;
 use grainlab_results::read_back::{self, InvertedPacking};
@@ -53,6 +54,11 @@ impl Run {
     /// True if something could not be read.
     pub fn is_incomplete(&self) -> bool {
         !self.missing.is_empty()
+    }
+
+    /// Returns true if the run ended without an error, and all of it can be read.
+    pub(crate) fn is_complete(&self) -> bool {
+        self.summary.exit == Some(0) && !self.is_incomplete()
     }
 
     /// True if it is unknown which messages of the recording are right.
@@ -227,6 +233,17 @@ impl Run {
     pub(crate) fn last(&self) -> Option<&InvertedPacking> {
         self.states.last()
     }
+}
+
+/// Returns the pressures of these states, kPa: one number, or a range.
+pub(crate) fn pressure_range<'a>(
+    states: impl IntoIterator<Item = &'a InvertedPacking>,
+    decimals: usize,
+) -> String {
+    let pressures = states.into_iter().map(|state| state.packing.report.pressure() / 1e3);
+    let ends = pressures.fold([f64::INFINITY, 0.0], |[low, high], p| [p.min(low), p.max(high)]);
+    let [low, high] = ends.map(|p| three_digits(p, decimals));
+    if low == high { low } else { format!("{low} to {high}") }
 }
 
 /// The words after `grainlab launch` in a file that it wrote.

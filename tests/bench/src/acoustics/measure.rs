@@ -83,7 +83,7 @@ pub(crate) fn rows(packings: &[Packing], plan: &Plan) -> Result<Vec<Row>, Failur
                 match found {
                     Ok(found) => {
                         errors.add(&found, network, packing);
-                        failures.extend(found.warnings.iter().map(ToString::to_string));
+                        failures.extend(found.notes.iter().map(ToString::to_string));
                     }
                     Err(reason @ AcousticsError::Setting { .. }) => return Err(Failure::usage(reason)),
                     Err(reason) => failures.push(format!("step {}: {reason}", packing.step)),

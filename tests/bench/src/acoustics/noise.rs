@@ -89,7 +89,7 @@ fn compared(answer: grainlab_emt_inversion::Answer, truth: &PackingReport) -> Re
     let of = |(_, quantity): (Family, InferredQuantity)| {
         let inferred = inferred.as_ref()?;
         let error = inferred.values[quantity]? - truth.counted(quantity)?;
-        Some((error, error / inferred.sigma[quantity]?))
+        Some((error, error / inferred.sigma(quantity)?))
     };
     Ok(QUANTITIES.map(of))
 }

@@ -5,7 +5,8 @@ use crate::cpu_time::process_seconds;
 use clap::ValueEnum;
 use grainlab_console::Failure;
 use grainlab_core::{ComponentControl, Packing, ServoLaw, SymTensor};
-use grainlab_dem::{Compute, Engine, EngineSettings, Simd, TimeStep};
+use grainlab_dem::{Engine, Simd};
+use grainlab_engine::{Compute, EngineSettings, TimeStep};
 use grainlab_node_kit::Exit;
 use serde::Serialize;
 use std::time::Instant;
@@ -108,7 +109,7 @@ fn setting(features: Features, packing: &Packing) -> EngineSettings {
     }
 }
 
-fn invalid(error: grainlab_dem::DemError) -> Failure {
+fn invalid(error: grainlab_engine::EngineError) -> Failure {
     Failure::new(Exit::PhysicsInvalid, error)
 }
 
@@ -135,11 +136,13 @@ fn answered(
 
 /// Builds an engine, warms it up for a tenth of the steps, and times it.
 pub(crate) fn run(packing: &Packing, pressure: f64, case: &Case) -> Result<Loop, Failure> {
-    let compute = Compute::new(case.simd, case.threads as usize).map_err(Failure::usage)?;
+    let simd = case.simd.if_available().map_err(Failure::usage)?;
+    let compute = Compute::new(case.threads as usize).map_err(Failure::usage)?;
     let copies = replicated(packing, case.copies)?;
     let before = resident_bytes();
     let mut engine = Engine::from_packing(&copies, setting(case.features, packing)).map_err(invalid)?;
     drop(copies);
+    engine.set_simd(simd);
     engine.set_compute(compute.clone());
     engine.sort_spatially();
     engine.initialise().map_err(invalid)?;

@@ -5,7 +5,7 @@ use super::run::{Runs, finished, press, reason};
 use crate::numbers::rms;
 use crate::row::{Family, Row};
 use grainlab_console::Failure;
-use grainlab_dem::EnergyBalance;
+use grainlab_engine::EnergyBalance;
 use grainlab_node_kit::Exit;
 use grainlab_page::median;
 use grainlab_scene::Scene;

@@ -4,7 +4,7 @@ use super::statistics::Observables;
 use crate::cpu_time::thread_seconds;
 use grainlab_console::Failure;
 use grainlab_core::{ComponentControl, Packing, ServoLaw};
-use grainlab_dem::EnergyBalance;
+use grainlab_engine::EnergyBalance;
 use grainlab_experiment::Simulation;
 use grainlab_node_kit::Exit;
 use grainlab_scene::Scene;

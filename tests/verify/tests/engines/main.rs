@@ -2,7 +2,9 @@
 
 mod toy;
 
-use grainlab_experiment::{Dem, EngineFactory, Simulation};
+use grainlab_dem::Dem;
+use grainlab_engine::EngineFactory;
+use grainlab_experiment::Simulation;
 use grainlab_scene::Scene;
 use grainlab_verify::conformance::CLAIMS;
 use std::sync::Arc;
@@ -15,7 +17,7 @@ fn broken(factory: &dyn EngineFactory) -> Vec<String> {
 
 #[test]
 fn our_engine_and_a_toy_pass_the_suite_of_engines() {
-    assert_eq!(broken(&Dem), Vec::<String>::new());
+    assert_eq!(broken(&Dem::default()), Vec::<String>::new());
     assert_eq!(broken(&Toys::default()), Vec::<String>::new());
 }
 
@@ -73,7 +75,7 @@ fn a_scene_runs_with_another_engine_from_the_end_of_the_gas() {
         let pressure = run.engine().observables().unwrap().stress.tensor.mean();
         (gas.unwrap(), pressure, run.packing().unwrap())
     };
-    let (ours, theirs) = (run(Arc::new(Dem)), run(Arc::new(Toys::default())));
+    let (ours, theirs) = (run(Arc::new(Dem::default())), run(Arc::new(Toys::default())));
     let sorted = |mut positions: Vec<grainlab_core::Vec3>| {
         positions.sort_by(|a, b| a.x.total_cmp(&b.x));
         positions

@@ -3,8 +3,7 @@
 use grainlab_core::contact::ContactLaw;
 use grainlab_core::stress::stress;
 use grainlab_core::{Contact, Mat3, Packing, SymTensor, Vec3};
-use grainlab_dem::{Compute, EngineSettings};
-use grainlab_experiment::{EngineFactory, ExperimentError, Observables, ParticleEngine};
+use grainlab_engine::{Compute, EngineError, EngineFactory, EngineSettings, Observables, ParticleEngine};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum Fault {
@@ -33,8 +32,8 @@ struct Toy {
     fault: Fault,
 }
 
-fn refused<T>(reason: impl ToString) -> Result<T, ExperimentError> {
-    Err(ExperimentError::OtherEngine { engine: "toy".into(), reason: reason.to_string() })
+fn refused<T>(reason: impl ToString) -> Result<T, EngineError> {
+    Err(EngineError::Failed { engine: "toy".into(), reason: reason.to_string() })
 }
 
 impl EngineFactory for Toys {
@@ -44,7 +43,7 @@ impl EngineFactory for Toys {
         settings: &EngineSettings,
         rate: &[f64; 6],
         _compute: &Compute,
-    ) -> Result<Box<dyn ParticleEngine>, ExperimentError> {
+    ) -> Result<Box<dyn ParticleEngine>, EngineError> {
         if packing.law != ContactLaw::default() {
             return refused("only the law hertz");
         }
@@ -60,7 +59,7 @@ impl EngineFactory for Toys {
 }
 
 impl Toy {
-    fn check(&self, s: &EngineSettings) -> Result<(), ExperimentError> {
+    fn check(&self, s: &EngineSettings) -> Result<(), EngineError> {
         if self.fault != Fault::Careless && (s.drag.is_nan() || s.drag < 0.0) {
             return refused("drag must be 0 or more");
         }
@@ -73,7 +72,7 @@ impl Toy {
         Ok(())
     }
 
-    fn find_contacts(&mut self) -> Result<(), ExperimentError> {
+    fn find_contacts(&mut self) -> Result<(), EngineError> {
         let p = &mut self.grains;
         p.contacts.clear();
         let modulus = 4.0 / 3.0 * p.material.shear_modulus / (1.0 - p.material.poisson_ratio);
@@ -114,7 +113,7 @@ impl ParticleEngine for Toy {
         &self.settings
     }
 
-    fn begin_phase(&mut self, settings: &EngineSettings) -> Result<(), ExperimentError> {
+    fn begin_phase(&mut self, settings: &EngineSettings) -> Result<(), EngineError> {
         self.check(settings)?;
         self.settings = *settings;
         let (smallest, m) =
@@ -123,7 +122,7 @@ impl ParticleEngine for Toy {
         Ok(())
     }
 
-    fn set_rate(&mut self, rate: &[f64; 6]) -> Result<(), ExperimentError> {
+    fn set_rate(&mut self, rate: &[f64; 6]) -> Result<(), EngineError> {
         if !rate.iter().all(|r| r.is_finite()) {
             return refused("the strain rate is not finite");
         }
@@ -135,7 +134,7 @@ impl ParticleEngine for Toy {
         self.rate
     }
 
-    fn run(&mut self, steps: u32) -> Result<(Mat3, Observables), ExperimentError> {
+    fn run(&mut self, steps: u32) -> Result<(Mat3, Observables), EngineError> {
         let (dt, mut total) = (self.grains.time_step, Mat3::identity());
         let rate = SymTensor::from_voigt(self.rate).matrix() * dt;
         let step = Mat3::identity() + rate + 0.5 * rate * rate;
@@ -172,7 +171,7 @@ impl ParticleEngine for Toy {
         self.grains.time_step
     }
 
-    fn observables(&self) -> Result<Observables, ExperimentError> {
+    fn observables(&self) -> Result<Observables, EngineError> {
         let p = &self.grains;
         let net: f64 = self.forces().iter().map(|f| f.norm()).sum::<f64>() / p.radii.len() as f64;
         let mean: f64 = p.contacts.iter().map(|c| c.normal_force).sum::<f64>() / p.contacts.len() as f64;
@@ -190,7 +189,7 @@ impl ParticleEngine for Toy {
         })
     }
 
-    fn packing(&self, deformation: Mat3) -> Result<Packing, ExperimentError> {
+    fn packing(&self, deformation: Mat3) -> Result<Packing, EngineError> {
         Ok(Packing { deformation, ..self.grains.clone() })
     }
 }

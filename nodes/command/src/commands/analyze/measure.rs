@@ -2,8 +2,8 @@
 
 use crate::commands::packings::Found;
 use crate::offline_recording::Recorded;
+use grainlab_core::notes::Note;
 use grainlab_core::results::{NoStiffness, yields};
-use grainlab_experiment::PathPosition;
 use grainlab_micromechanics::network::Springs;
 use grainlab_micromechanics::probe::{StrainProbe, StrainProbeResult};
 use grainlab_micromechanics::{Settings, analyze};
@@ -28,16 +28,13 @@ pub(crate) fn measure(
     let named = |e: &dyn std::fmt::Display| format!("{source}, step {}: {e}", packing.step);
     let found = analyze(packing, settings).map_err(|e| named(&e))?;
     let why_none = found.why_no_stiffness();
-    let position = PathPosition::of(&imported.run_state);
-    let mut shown =
-        MeasuredPacking::new(source.to_owned(), found.report).at(position).doubted(packing, &imported.notes);
+    let mut shown = MeasuredPacking::new(source.to_owned(), found.report).doubted(packing, &imported.notes);
     shown.step = imported.step;
     shown.seconds = Some(began.elapsed().as_secs_f64());
     let (report, probe) = (&shown.report, found.probe.as_ref());
     shown.probe = probe.zip(settings.probe).map(|(p, set)| probe_view(set.amplitude, p));
-    let warnings = &mut shown.warnings;
-    warnings.extend(why_none);
-    warnings.extend(probe.and_then(one_sided));
+    let remarks = why_none.into_iter().chain(probe.and_then(one_sided));
+    shown.notes.extend(remarks.map(Note::remark));
     // No wave passes a packing that some strain does not load.
     let is_without = report.stiffness().is_none() || yields(report);
     let is_too_deep = packing.overlaps().is_some_and(|overlaps| overlaps.are_too_deep());

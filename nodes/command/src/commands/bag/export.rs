@@ -3,8 +3,7 @@
 use crate::commands::packings::import as import_flags;
 use clap::ValueEnum;
 use grainlab_console::{Failure, print, say, worse};
-use grainlab_core::Packing;
-use grainlab_experiment::{PathPosition, StrainOrigin};
+use grainlab_core::{Packing, StrainOrigin};
 use grainlab_export::{ExportFormat, Exporter, FilePart};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::import::{self, ImportError, Imported};
@@ -114,8 +113,8 @@ struct Writer<'a> {
 /// state.
 fn referred(imported: &Imported) -> Cow<'_, Packing> {
     let packing = &imported.packing;
-    match PathPosition::of(&imported.run_state) {
-        Some(position) if position.strain_origin != StrainOrigin::Reference => {
+    match &packing.path {
+        Some(path) if path.strain_origin != StrainOrigin::Reference => {
             Cow::Owned(Packing { deformation: Packing::no_reference(), ..packing.clone() })
         }
         _ => Cow::Borrowed(packing),
@@ -216,20 +215,20 @@ mod tests {
         let text = "base = 'demo'\nname = 'few'\ngrains.count = 20";
         let scene = grainlab_scene::Scene::parse(text).unwrap();
         let run = grainlab_experiment::Simulation::new(scene).unwrap();
-        let (packing, run_state) = (run.packing().unwrap(), run.run_state().unwrap());
-        let imported = |run_state| Imported {
+        let packing = run.packing().unwrap();
+        let imported = |path| Imported {
             header: grainlab_msgs::boundary::packing_header(&packing),
-            packing: packing.clone(),
+            packing: Packing { path, ..packing.clone() },
             step: 0,
-            run_state,
+            run_state: Vec::new(),
             source: String::new(),
             rounding: None,
             notes: Vec::new(),
         };
         assert!(packing.strain().is_some());
-        assert_eq!(referred(&imported(run_state)).strain(), None);
+        assert_eq!(referred(&imported(packing.path.clone())).strain(), None);
         // A file without a run states what its strain counts from.
-        assert_eq!(referred(&imported(Vec::new())).strain(), packing.strain());
+        assert_eq!(referred(&imported(None)).strain(), packing.strain());
     }
 
     #[test]

@@ -128,7 +128,7 @@ fn of_member<'a>(member: &'a Member, run: &Path) -> Result<Found<'a>, String> {
         return Err(failed(complaint));
     }
     let name = |found: &InvertedPacking| {
-        let phase = found.packing.position.and_then(|p| p.phase.checked_sub(1));
+        let phase = found.packing.position.as_ref().and_then(|p| p.phase.checked_sub(1));
         phase.and_then(|n| scene.phases.get(n)).map_or_else(String::new, |p| p.name.clone())
     };
     let state = |found| State { member, phase: name(&found), found };
@@ -236,10 +236,10 @@ fn inferred(results: &[Inference]) -> BTreeMap<String, Cell> {
         for q in InferredQuantity::ALL {
             if let Some(value) = r.values[q] {
                 cells.insert(format!("{prefix}.{q}"), Cell::Number(value));
-                cells.insert(format!("{prefix}.{q}_stddev"), number(r.sigma[q]));
+                cells.insert(format!("{prefix}.{q}_stddev"), number(r.sigma(q)));
             }
         }
-        cells.insert(format!("{prefix}.status"), Cell::Text(r.status.to_owned()));
+        cells.insert(format!("{prefix}.status"), Cell::Text(r.status.to_string()));
     }
     cells
 }

@@ -7,8 +7,9 @@ use super::explain::Explained;
 use super::predictive::Predictive;
 use super::state::State;
 use grainlab_console::worse;
-use grainlab_emt::{EmtError, Estimate, Status, Warning, recommended};
-use grainlab_msgs::boundary::ModelResult;
+use grainlab_core::notes::{Note, Status, texts};
+use grainlab_core::results::Estimate;
+use grainlab_emt::{EmtError, Inversion, recommended};
 use grainlab_node_kit::Exit;
 use grainlab_results::Inference;
 use serde::Serialize;
@@ -21,7 +22,7 @@ pub(super) struct Answer {
     /// Or the reason why the line is invalid.
     pub(super) state: Result<State, BadRow>,
     /// One per case; empty without a state.
-    pub(super) outcomes: Vec<Result<Estimate, EmtError>>,
+    pub(super) outcomes: Vec<Result<Inversion, EmtError>>,
 }
 
 /// An answer as JSON.
@@ -70,21 +71,19 @@ impl Answer {
         cases.iter().enumerate().map(one).collect()
     }
 
-    fn inference(&self, case: &Case, outcome: Option<&Result<Estimate, EmtError>>) -> Inference {
+    fn inference(&self, case: &Case, outcome: Option<&Result<Inversion, EmtError>>) -> Inference {
         let name = case.calibration.name();
         match (&self.state, outcome) {
             (Ok(state), Some(outcome)) => {
-                let mut inference = Inference::of(case.model.name(), name, outcome);
-                let result = &mut inference.result;
-                result.status = status(state, outcome).name();
-                // The reason of a model for its status comes first, then what is wrong with the data.
-                let is_of_model = Status::of(outcome) == Status::Contradictory && !state.in_conflict;
-                let at = if outcome.is_ok() && !is_of_model { 0 } else { result.warnings.len() };
-                result.warnings.splice(at..at, state.notes.iter().cloned());
+                let mut inference = Inference::new(case.model.name(), name, outcome);
+                inference.estimate.add_notes(&state.notes);
                 inference
             }
-            (Err(row), _) => ModelResult::unknown(case.model.name(), name, vec![row.fault.clone()]).into(),
-            (Ok(_), None) => ModelResult::unknown(case.model.name(), name, Vec::new()).into(),
+            (Err(row), _) => {
+                let fault = Note::no_answer(row.fault.clone());
+                Estimate::unknown(case.model.name(), name, vec![fault]).into()
+            }
+            (Ok(_), None) => Estimate::unknown(case.model.name(), name, Vec::new()).into(),
         }
     }
 
@@ -149,7 +148,7 @@ impl Answer {
     /// Why an estimate is contradictory, or determines nothing; empty for others.
     pub(super) fn contradictions(&self) -> Vec<String> {
         let Ok(state) = &self.state else { return Vec::new() };
-        let of_outcome = |outcome: &Result<Estimate, EmtError>| {
+        let of_outcome = |outcome: &Result<Inversion, EmtError>| {
             outcome.as_ref().map_or(Vec::new(), |estimate| contradictions(state, estimate))
         };
         self.outcomes.iter().flat_map(of_outcome).collect()
@@ -177,17 +176,14 @@ fn is_lacking(error: &EmtError) -> bool {
     matches!(error, EmtError::Missing { .. } | EmtError::NotCalibrated { .. } | EmtError::NoLikelihood { .. })
 }
 
-/// The status of an outcome: that of the model, unless the data themselves are in conflict.
-fn status(state: &State, outcome: &Result<Estimate, EmtError>) -> Status {
-    match Status::of(outcome) {
-        Status::Ok | Status::Extrapolated if state.in_conflict => Status::Contradictory,
-        status => status,
-    }
+/// Returns the status of an outcome: the worse one of model and data.
+fn status(state: &State, outcome: &Result<Inversion, EmtError>) -> Status {
+    outcome.as_ref().map_or(Status::Unknown, Inversion::status).max(Status::of(&state.notes))
 }
 
-/// Contradictions, or the reason why nothing is determined.
-fn contradictions(state: &State, estimate: &Estimate) -> Vec<String> {
-    let of_data = state.notes.iter().filter(|_| state.in_conflict).cloned();
-    let is_reason = |w: &&Warning| w.is_contradiction() || estimate.status == Status::Unknown;
-    of_data.chain(estimate.warnings.iter().filter(is_reason).map(ToString::to_string)).collect()
+/// Returns the contradictions of data and model, or the reasons why nothing is determined.
+fn contradictions(state: &State, inversion: &Inversion) -> Vec<String> {
+    let is_reason =
+        |note: &&Note| note.severity() >= Status::Contradictory || inversion.status() == Status::Unknown;
+    texts(state.notes.iter().chain(&inversion.notes).filter(is_reason))
 }

@@ -5,6 +5,7 @@ use super::slips;
 use super::state::State;
 use csv::{ReaderBuilder, StringRecord, Terminator};
 use grainlab_console::separated;
+use grainlab_core::notes::Note;
 use grainlab_core::results::QUANTITIES;
 use grainlab_core::{Stiffness, Vec3};
 use grainlab_emt::{Moduli, Modulus, Probe, check_structure};
@@ -239,7 +240,7 @@ impl Columns {
         state.conditions.smooth = smooth.unwrap_or(false);
         if flag(self.label(cells, "axis_found"), "axis_found")? == Some(false) {
             let note = "no axis stood out in the wave speeds: the moduli are about e3, which need not be an axis of symmetry";
-            state.notes.push(note.to_owned());
+            state.notes.push(Note::remark(note));
         }
         if let Some(grains) =
             state.grains.filter(|n| !(1.0..=f64::from(u32::MAX)).contains(n) || n.fract() != 0.0)
@@ -257,10 +258,10 @@ impl Columns {
                 return Err(format!("column {name} is a standard deviation of a quantity that is not there"));
             }
         }
-        state.notes.extend(state.taken_as_exact());
-        let improbable: Vec<String> =
-            INPUTS.iter().filter_map(|input| input.improbable_error(&state)).collect();
-        state.notes.extend(improbable);
+        let improbable = INPUTS.iter().filter_map(|input| input.improbable_error(&state));
+        let remarks: Vec<Note> =
+            state.taken_as_exact().into_iter().chain(improbable).map(Note::remark).collect();
+        state.notes.extend(remarks);
         Ok(state)
     }
 
@@ -279,10 +280,10 @@ impl Columns {
         }
         let skew = 0.5 * (stiffness.0 - stiffness.0.transpose()).amax() / stiffness.0.amax();
         if skew > SAME {
-            state.notes.push(format!(
+            state.notes.push(Note::remark(format!(
                 "the stiffness is not symmetric, by {:.1} % of its largest entry: its symmetric part is used",
                 100.0 * skew
-            ));
+            )));
         }
         let symmetric = 0.5 * (stiffness.0 + stiffness.0.transpose());
         if symmetric.symmetric_eigenvalues().min() < -SAME * symmetric.amax() {

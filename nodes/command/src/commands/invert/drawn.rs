@@ -4,7 +4,7 @@ use super::case::Case;
 use super::state::State;
 use grainlab_console::{Failure, json, say};
 use grainlab_core::results::InferredQuantity;
-use grainlab_emt::{Draws, EmtError, Estimate, PosteriorSettings};
+use grainlab_emt::{Draws, EmtError, Inversion, PosteriorSettings};
 use grainlab_node_kit::Exit;
 use grainlab_results::posterior_draws;
 use serde_json::{Map, Value, json};
@@ -52,13 +52,13 @@ pub(super) fn write(state: &State, cases: &[Case], number: Number, path: &Path) 
 }
 
 /// Notes where the draws of a quantity scatter otherwise than the estimate states.
-pub(super) fn unlike(draws: &Draws, estimate: &Estimate, has_prior: bool) -> impl Iterator<Item = String> {
+pub(super) fn unlike(draws: &Draws, estimate: &Inversion, has_prior: bool) -> impl Iterator<Item = String> {
     draws.quantities.iter().filter_map(move |quantity| unlike_of(draws, estimate, *quantity, has_prior))
 }
 
 fn unlike_of(
     draws: &Draws,
-    estimate: &Estimate,
+    estimate: &Inversion,
     quantity: InferredQuantity,
     has_prior: bool,
 ) -> Option<String> {
@@ -85,7 +85,7 @@ pub(super) fn drawn(
     case: &Case,
     count: usize,
     seed: u64,
-) -> Result<(Draws, Estimate), EmtError> {
+) -> Result<(Draws, Inversion), EmtError> {
     let settings = PosteriorSettings { seed, ..PosteriorSettings::default() };
     // A state without an estimate has no posterior worth drawing from: it is far outside the packings of the calibration.
     let estimate = case.model.infer(&state.observation(case)?, &case.calibration)?;

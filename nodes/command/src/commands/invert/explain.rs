@@ -3,7 +3,7 @@
 use super::case::Case;
 use grainlab_console::{Table, fixed};
 use grainlab_core::results::{INFERENCE_INPUTS, InferredQuantity, MicrostructureCovariance};
-use grainlab_emt::{EmtError, Estimate};
+use grainlab_emt::{EmtError, Inversion};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -28,12 +28,12 @@ pub(super) struct Explained {
 }
 
 /// All results of the models.
-pub(super) fn explained(outcomes: &[Result<Estimate, EmtError>], cases: &[Case]) -> Vec<Explained> {
+pub(super) fn explained(outcomes: &[Result<Inversion, EmtError>], cases: &[Case]) -> Vec<Explained> {
     let found = outcomes.iter().zip(cases).filter_map(|(o, case)| Some((o.as_ref().ok()?, case)));
     found.flat_map(|(estimate, case)| of_estimate(estimate, case)).collect()
 }
 
-fn of_estimate(estimate: &Estimate, case: &Case) -> Vec<Explained> {
+fn of_estimate(estimate: &Inversion, case: &Case) -> Vec<Explained> {
     let condition_number = estimate.condition_number();
     let determined = InferredQuantity::ALL.into_iter().filter(|q| estimate.structure.get(*q).is_some());
     let one = |quantity: InferredQuantity| {

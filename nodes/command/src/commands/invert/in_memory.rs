@@ -8,6 +8,7 @@ use super::state::State;
 use super::{drawn, prior};
 use crate::commands::packings::import::in_range;
 use grainlab_console::Failure;
+use grainlab_core::notes::Note;
 use grainlab_emt::Draws;
 use grainlab_node_kit::Exit;
 use grainlab_results::Inference;
@@ -36,7 +37,7 @@ pub struct By<'a> {
 pub struct InvertedRow {
     /// Name of the sample, if a column has it.
     pub sample: Option<String>,
-    /// Estimate of the model; if it has none, its warnings have the reason.
+    /// Estimate of the model; if it has none, its notes have the reason.
     pub inference: Inference,
     /// Why the status is contradictory, or nothing is determined.
     pub contradictions: Vec<String>,
@@ -83,11 +84,11 @@ pub fn invert(table: Vec<u8>, by: &By<'_>, stop: &AtomicBool) -> Result<Inverted
             if let (Some((count, seed)), None, None, Ok(state)) = (by.draws, &draws, failed, &answer.state) {
                 let of_row = drawn::drawn(state, case, count, seed);
                 let (of_row, estimate) = of_row.map_err(|e| Failure::new(Exit::PhysicsInvalid, e))?;
-                notes.extend(drawn::unlike(&of_row, &estimate, case.prior.is_some()));
+                notes.extend(drawn::unlike(&of_row, &estimate, case.prior.is_some()).map(Note::remark));
                 draws = Some(of_row);
             }
             let mut inference = answer.inferences(&cases).into_iter().next();
-            inference.iter_mut().for_each(|inference| inference.result.warnings.append(&mut notes));
+            inference.iter_mut().for_each(|inference| inference.estimate.notes.append(&mut notes));
             let contradictions = answer.contradictions();
             found.extend(inference.map(|inference| InvertedRow {
                 sample,

@@ -3,7 +3,7 @@
 use super::case::Case;
 use super::state::State;
 use grainlab_console::{Table, fixed, three_digits};
-use grainlab_emt::{Check, EmtError, Estimate, PosteriorSettings};
+use grainlab_emt::{Check, EmtError, Inversion, PosteriorSettings};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -32,10 +32,10 @@ struct OfModulus {
 /// Predictions of the models that state a likelihood. Improbable moduli are part of the status of the answer.
 pub(super) fn of_ways(
     state: &State,
-    outcomes: &mut [Result<Estimate, EmtError>],
+    outcomes: &mut [Result<Inversion, EmtError>],
     cases: &[Case],
 ) -> Vec<Predictive> {
-    let of_case = |(case, outcome): (&Case, &mut Result<Estimate, EmtError>)| {
+    let of_case = |(case, outcome): (&Case, &mut Result<Inversion, EmtError>)| {
         let check = state.posterior(case, PosteriorSettings::default()).ok()?.check();
         if let Ok(estimate) = outcome {
             check.apply(estimate);

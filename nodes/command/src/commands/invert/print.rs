@@ -4,6 +4,7 @@ use super::answer::{Answer, More};
 use super::case::Case;
 use super::{evidence, explain, predictive};
 use grainlab_console::{CsvText, Table};
+use grainlab_core::notes::texts;
 use grainlab_results::{Inference, inference_text};
 
 /// Converts results to text.
@@ -31,10 +32,10 @@ impl Printer<'_> {
             text.cell(answer.sample().unwrap_or_default());
             text.number(state.map(|s| s.conditions.pressure.value));
             result.exact_cells(&mut text);
-            text.number(result.gamma_over_delta);
+            text.number(result.gamma.map(|gamma| gamma.value));
             text.cell(state.map_or("", |s| s.gamma_source(case)));
             text.cell(&line);
-            text.cell(&result.warnings.join("; "));
+            text.cell(&texts(&result.notes).join("; "));
             text.end();
         }
         text.finish()

@@ -1,5 +1,6 @@
 //! Wave speeds of samples whose contacts are not known: structure at each pressure, and the contact.
 
+mod doubts;
 mod inputs;
 mod print;
 mod sample;
@@ -69,7 +70,7 @@ pub(super) fn run(
             notes: Vec::new(),
             doubts: Vec::new(),
         };
-        [all.doubts, all.notes] = print::notes(&all, &prior, network.reach.z[0]);
+        [all.doubts, all.notes] = doubts::sentences(&all, &prior, network.reach.z[0]);
         found.push(all);
     }
     format.print(&found, || print::csv(&found), || found.iter().map(print::text).collect())?;
@@ -78,7 +79,11 @@ pub(super) fn run(
     }
     let contradictory: Vec<&Sample> = found.iter().filter(|s| s.is_contradictory()).collect();
     for sample in &contradictory {
-        say!("grainlab: {name}: sample {:?}: contradictory: {}", sample.sample, print::contradiction(sample));
+        say!(
+            "grainlab: {name}: sample {:?}: contradictory: {}",
+            sample.sample,
+            doubts::contradiction(sample)
+        );
     }
     failed.iter().for_each(|fault| say!("grainlab: {fault}"));
     Ok(if contradictory.is_empty() && failed.is_empty() { Exit::Done } else { Exit::PhysicsInvalid })

@@ -3,6 +3,7 @@
 use super::speed_table::{SpeedLine, in_radians};
 use super::state::State;
 use grainlab_console::Failure;
+use grainlab_core::notes::Note;
 use grainlab_core::{Vec3, WaveSpeed};
 use grainlab_emt::christoffel::moduli_from_speeds;
 use grainlab_emt::{Conditions, Measured, Probe};
@@ -56,8 +57,7 @@ pub(super) fn add(
         Failure::new(exit, format!("{name}: {e}"))
     })?;
     state.notes = notes_on_fit(&fitted, speeds.len(), |at| format!("that of line {}", lines[at].line));
-    state.notes.extend(in_radians(lines));
-    state.in_conflict = fitted.conflict.is_some();
+    state.notes.extend(in_radians(lines).map(Note::remark));
     // Waves are elastic.
     state.probe = Some(Probe::Sticking);
     state.moduli = fitted.observation.moduli;

@@ -2,10 +2,11 @@
 
 use super::case::Case;
 use grainlab_core::Material;
+use grainlab_core::notes::Note;
 use grainlab_core::results::Microstructure;
 use grainlab_core::results::StrainRatios;
 use grainlab_emt::{
-    Calibration, Conditions, EmtError, Estimate, Measured, Moduli, ModuliCovariance, Modulus, Observation,
+    Calibration, Conditions, EmtError, Inversion, Measured, Moduli, ModuliCovariance, Modulus, Observation,
     Posterior, PosteriorSettings, Probe, StrainRatio, StrainRatioSource,
 };
 
@@ -38,9 +39,7 @@ pub(crate) struct State {
     /// Whether contacts slid while the moduli were measured; `None` if nothing is stated.
     pub(crate) probe: Option<Probe>,
     /// Notes on the data, for every estimate.
-    pub(crate) notes: Vec<String>,
-    /// True if the data contradict each other, as the notes say.
-    pub(crate) in_conflict: bool,
+    pub(crate) notes: Vec<Note>,
     /// Number of grains, if a table contains it.
     pub(crate) grains: Option<f64>,
     /// The true microstructure, if a table contains it.
@@ -79,7 +78,7 @@ impl State {
         self.covariance(&self.moduli).map(|c| c[(at, at)].sqrt())
     }
 
-    pub(super) fn infer(&self, case: &Case) -> Result<Estimate, EmtError> {
+    pub(super) fn infer(&self, case: &Case) -> Result<Inversion, EmtError> {
         let estimate = case.model.infer(&self.observation(case)?, &case.calibration)?;
         match &case.prior {
             Some(prior) => estimate.with_prior(prior)?.within(&case.model.prior_domain(&case.calibration)),

@@ -5,6 +5,7 @@ use crate::offline_recording::Recorded;
 use grainlab_acoustic_probe::{Settings, messages};
 use grainlab_acoustics::AcousticsError;
 use grainlab_core::Vec3;
+use grainlab_core::notes::Note;
 use grainlab_micromechanics::analyze;
 use grainlab_msgs::boundary::WaveSpeedsReading;
 use grainlab_msgs::topics;
@@ -26,7 +27,7 @@ pub(crate) fn measure(
         let mut measured =
             MeasuredPacking::new(source.to_owned(), found.report).doubted(packing, &imported.notes);
         measured.step = imported.step;
-        measured.warnings.extend(why_none);
+        measured.notes.extend(why_none.map(Note::remark));
         Ok::<_, String>(measured)
     };
     let found = match grainlab_acoustics::measure(packing, &settings.0) {
@@ -38,7 +39,7 @@ pub(crate) fn measure(
             let is_fault = !matches!(&why, AcousticsError::NoStiffness(why) if !why.is_fault());
             if packing.report.elasticity.as_ref().err().is_none_or(|none| none.to_string() != why.to_string())
             {
-                packing.warnings.push(format!("no wave speeds: {why}"));
+                packing.notes.push(Note::remark(format!("no wave speeds: {why}")));
             }
             let shown = Probed { packing, acoustic: None };
             return Ok(Found { shown, is_without: true, is_fault, messages: Ok(Vec::new()) });

@@ -1,7 +1,8 @@
 //! Fits of the constants of `travel_time` by computed records of known speed. No test of stated errors has these records.
 
 use super::computed_records::{Computed, Conditions, computed, usual};
-use super::travel_time::{ALIKE, OF_INTERVAL, Pick, TAUGHT, picks};
+use super::pick::{COMMON_VARIANCE_SHARE, Pick};
+use super::travel_time::{SIGMAS_OF_INTERVAL, TAUGHT, picks};
 use grainlab_testkit::nightly;
 use rand_distr::{Distribution, Uniform};
 use rand_pcg::Pcg64Mcg;
@@ -43,7 +44,7 @@ fn assert_fitted(numbers: impl Iterator<Item = u64>, change: Change, cause: usiz
     let needed = each.filter_map(|(pick, truth)| {
         let stated = (TAUGHT[cause] * pick.causes[cause]).powi(2);
         let rest = pick.time_stddev.powi(2) - stated;
-        let lacks = ((pick.time - truth) / OF_INTERVAL).powi(2) - rest;
+        let lacks = ((pick.time - truth) / SIGMAS_OF_INTERVAL).powi(2) - rest;
         (stated > rest).then(|| lacks.max(0.0).sqrt() / pick.causes[cause])
     });
     let mut needed: Vec<f64> = needed.collect();
@@ -115,5 +116,5 @@ fn in_common(change: Change) -> f64 {
 #[test]
 fn records_of_one_path_have_less_in_common_than_is_stated_and_more_if_the_transducers_ring() {
     let [usual, ringing] = [in_common(|_, _| ()), in_common(rings)];
-    assert!(usual < ALIKE && ALIKE < ringing, "{usual}, {ringing}");
+    assert!(usual < COMMON_VARIANCE_SHARE && COMMON_VARIANCE_SHARE < ringing, "{usual}, {ringing}");
 }

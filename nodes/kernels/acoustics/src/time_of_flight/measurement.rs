@@ -8,12 +8,12 @@ use super::phase_velocity;
 use super::settings::{ArrivalPick, Settings};
 use super::wave_path::{PathResult, WavePath};
 use crate::curve::DispersionCurve;
-use crate::error::{AcousticsError, no_signal};
+use crate::error::{AcousticsError, in_brackets, no_signal};
 use crate::instrument::{Instrument, ReceiverSignals, SamplingWindow, burst_level};
 use crate::noise::seed_at;
 use crate::sample::Sample;
 use crate::trace::{Channel, Trace};
-use crate::warning::Warning;
+use grainlab_core::notes::Note;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -93,8 +93,8 @@ impl TimeOfFlight<'_> {
         // Contact forces change rho v^2 of moving grains by the order of the pressure.
         let modulus = self.sample.density() * curve.speed.powi(2);
         curve.stddev = curve.stddev.hypot(0.5 * self.sample.pressure() / modulus * curve.speed);
-        let warnings = self.nonlinearity(settings, speed, &bursts, &responses, &mut curve)?;
-        Ok(PathResult { curve, traces, warnings })
+        let notes = self.nonlinearity(settings, speed, &bursts, &responses, &mut curve)?;
+        Ok(PathResult { curve, traces, notes })
     }
 
     /// The speed of a first burst, m/s, from which frequencies and receivers follow.
@@ -157,7 +157,7 @@ impl TimeOfFlight<'_> {
         bursts: &[Burst],
         responses: &[BurstResponse],
         curve: &mut DispersionCurve,
-    ) -> Result<Vec<Warning>, AcousticsError> {
+    ) -> Result<Vec<Note>, AcousticsError> {
         let (opened, closed) = responses.iter().fold((0, 0), |(o, c), a| (o + a.opened, c + a.closed));
         let shortest = bursts.iter().zip(responses).max_by(|a, b| a.0.frequency.total_cmp(&b.0.frequency));
         let Some((burst, full)) = shortest.filter(|_| opened + closed > 0) else { return Ok(Vec::new()) };
@@ -175,15 +175,12 @@ impl TimeOfFlight<'_> {
         // A trace of another shape at half the amplitude cannot be extrapolated to zero amplitude.
         let unknown = if change > NONLINEAR { 0.5 * change } else { 0.0 };
         curve.stddev = curve.stddev.hypot((TO_ZERO * moved).hypot(unknown) * curve.speed);
-        let warning = Warning::Nonlinear {
-            direction: self.path.direction.into(),
-            polarization: self.path.polarization.into(),
-            amplitude,
-            opened,
-            closed,
-            change,
+        let [direction, polarization] =
+            [self.path.direction, self.path.polarization].map(|v| in_brackets(&v.into()));
+        let note = || {
+            Note::nonlinear(direction, polarization, amplitude, f64::from(opened), f64::from(closed), change)
         };
-        Ok(if change > NONLINEAR { vec![warning] } else { Vec::new() })
+        Ok((change > NONLINEAR).then(note).into_iter().collect())
     }
 }
 

@@ -4,7 +4,7 @@ use crate::curve::DispersionCurve;
 use crate::error::{AcousticsError, setting};
 use crate::ray::Ray;
 use crate::trace::Trace;
-use crate::warning::Warning;
+use grainlab_core::notes::Note;
 use grainlab_core::{Packing, Vec3};
 
 /// One polarization along one ray.
@@ -25,7 +25,7 @@ pub(crate) struct WavePath {
 pub(crate) struct PathResult {
     pub(crate) curve: DispersionCurve,
     pub(crate) traces: Vec<Trace>,
-    pub(crate) warnings: Vec<Warning>,
+    pub(crate) notes: Vec<Note>,
 }
 
 /// The path of each polarization of each ray. A ray must name lattice planes of the packing.

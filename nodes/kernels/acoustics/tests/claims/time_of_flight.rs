@@ -2,11 +2,11 @@
 
 use crate::sample;
 use grainlab_acoustics::AcousticsError;
-use grainlab_acoustics::Warning;
 use grainlab_acoustics::time_of_flight::Arrivals;
 use grainlab_acoustics::time_of_flight::{ArrivalPick, Settings, curve, curves};
 use grainlab_acoustics::{Instrument, Ray};
 use grainlab_core::Contact;
+use grainlab_core::notes::{Code, Note};
 use grainlab_core::results::NoStiffness;
 use grainlab_core::{Cell, Mat3, Packing, Vec3};
 use grainlab_testkit::nightly;
@@ -223,7 +223,7 @@ fn a_wave_that_opens_contacts_is_called_nonlinear() {
     assert!(none.is_empty(), "{none:?}");
     let (large, _, warnings) = sent(2e-3);
     let nonlinear =
-        |w: &Warning| matches!(w, Warning::Nonlinear { opened, change, .. } if *opened > 0 && *change > 0.01);
+        |n: &Note| n.is(Code::Nonlinear) && n.value("opened") > Some(0.0) && n.value("change") > Some(0.01);
     assert!(warnings.iter().any(nonlinear), "{warnings:?}");
     let off = (large[0].speed - small[0].speed).abs();
     assert!(off < 2.0 * large[0].stddev, "{off} {large:?}");

@@ -2,9 +2,10 @@
 
 use crate::{csv, ours};
 use grainlab_calibration::{CalibrationSample, check, learn, network};
+use grainlab_core::notes::{Code, Status};
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{
-    Calibration, EmtError, Estimate, Model, RelaxationCalibration, Relaxed, Status, StrainRatioSource,
+    Calibration, EmtError, Inversion, Model, RelaxationCalibration, Relaxed, StrainRatioSource,
 };
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
@@ -50,7 +51,7 @@ pub(crate) fn truth(s: &CalibrationSample, quantity: InferredQuantity) -> f64 {
     }
 }
 
-fn infer(s: &CalibrationSample, calibration: &Calibration) -> Result<Estimate, EmtError> {
+fn infer(s: &CalibrationSample, calibration: &Calibration) -> Result<Inversion, EmtError> {
     Relaxed.infer(&s.observation(StrainRatioSource::Zero), calibration)
 }
 
@@ -65,7 +66,7 @@ fn judged(s: &CalibrationSample, calibration: &Calibration) -> Result<Judged, Em
     let estimate = infer(s, calibration)?;
     let found =
         QUANTITIES.map(|q| (estimate.structure.get(q).unwrap() - truth(s, q), estimate.stddev(q).unwrap()));
-    Ok(Judged { sample: s.clone(), found, status: estimate.status })
+    Ok(Judged { sample: s.clone(), found, status: estimate.status() })
 }
 
 fn rms(all: &[&Judged], i: usize) -> f64 {
@@ -106,7 +107,7 @@ fn left_out_by_file() -> (Vec<Judged>, usize) {
         for s in packings {
             match judged(s, calibration) {
                 Ok(found) => all.push(found),
-                Err(EmtError::TooFar { .. } | EmtError::NoCoordination { .. }) => unknown += 1,
+                Err(e) if e.is(Code::TooFar) || e.is(Code::NoCoordination) => unknown += 1,
                 Err(e) => panic!("{}: {e}", s.preparation),
             }
         }
@@ -225,7 +226,7 @@ fn every_packing_outside_is_flagged_or_unknown_and_none_is_confidently_wrong() {
                     furthest =
                         found.found.iter().map(|(e, sigma)| (e / sigma).abs()).fold(furthest, f64::max);
                 }
-                Err(EmtError::TooFar { .. } | EmtError::NoCoordination { .. }) => unknown += 1,
+                Err(e) if e.is(Code::TooFar) || e.is(Code::NoCoordination) => unknown += 1,
                 Err(e) => panic!("{name}: {e}"),
             }
         }

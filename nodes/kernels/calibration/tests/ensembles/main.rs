@@ -16,8 +16,9 @@ mod stress_and_fabric;
 mod table;
 
 use grainlab_calibration::{CalibrationSample, discrepancies, learn};
+use grainlab_core::notes::Status;
 use grainlab_core::results::InferredQuantity;
-use grainlab_emt::{Calibration, Moduli, Modulus, Observation, Status, StrainRatioSource};
+use grainlab_emt::{Calibration, Moduli, Modulus, Observation, StrainRatioSource};
 use left_out::truth;
 
 /// Packings not used in any calibration: 24 seeds, 4 frictions, 4 pressures.

@@ -3,9 +3,9 @@
 use crate::csv;
 use grainlab_calibration::CalibrationSample;
 use grainlab_core::results::InferredQuantity;
-use grainlab_emt::{Calibration, Estimate, StrainRatioSource, Warning};
+use grainlab_emt::{Calibration, Inversion, StrainRatioSource};
 
-fn estimates(samples: &[CalibrationSample]) -> Vec<(f64, Estimate)> {
+fn estimates(samples: &[CalibrationSample]) -> Vec<(f64, Inversion)> {
     let model = grainlab_emt::model("hertz-mindlin").unwrap();
     let one = |s: &CalibrationSample| {
         (s.k, model.infer(&s.observation(StrainRatioSource::Zero), &Calibration::PAPER).unwrap())
@@ -35,12 +35,7 @@ fn the_share_of_contacts_that_stick_is_a_fit_and_no_property_of_the_contacts() {
     for (name, mean_share, some_negative) in [("held_out.csv", 0.29, false), ("wide.csv", 0.25, true)] {
         let shares: Vec<f64> = estimates(&csv::samples(name))
             .iter()
-            .filter_map(|(_, e)| {
-                e.warnings.iter().find_map(|w| match w {
-                    Warning::StickingShare { share } => Some(*share),
-                    _ => None,
-                })
-            })
+            .filter_map(|(_, e)| e.notes.iter().find_map(|note| note.value("share")))
             .collect();
         let found = mean(shares.iter().copied());
         let [low, high] = [f64::min, f64::max].map(|of| shares.iter().copied().reduce(of).unwrap());
@@ -54,7 +49,7 @@ fn the_share_of_contacts_that_stick_is_a_fit_and_no_property_of_the_contacts() {
 fn the_error_it_states_is_that_over_the_packings_of_the_calibration() {
     let files = ["isotropic.csv", "anisotropic.csv", "wide.csv"];
     let found = estimates(&files.into_iter().flat_map(csv::samples).collect::<Vec<_>>());
-    let k = |e: &Estimate| e.structure.k.unwrap();
+    let k = |e: &Inversion| e.structure.k.unwrap();
     let rms = mean(found.iter().map(|(truth, e)| (truth / k(e) - 1.0).powi(2))).sqrt();
     let (e, at) = (&found[0].1, InferredQuantity::K as usize);
     let stated = e.model_covariance.unwrap()[(at, at)];

@@ -7,8 +7,9 @@ use crate::csv::{self, Counted};
 use crate::judged::inside;
 use crate::left_out::by_file;
 use crate::ours;
+use grainlab_core::notes::Status;
 use grainlab_core::results::InferredQuantity;
-use grainlab_emt::{Calibration, Estimate, Model, Modulus, Observation, Probe, Relaxed, Status};
+use grainlab_emt::{Calibration, Inversion, Model, Modulus, Observation, Probe, Relaxed};
 use grainlab_testkit::Random;
 use grainlab_testkit::golden::text;
 use std::collections::BTreeMap;
@@ -57,7 +58,7 @@ struct Line {
 }
 
 impl Line {
-    fn add(&mut self, found: Option<Estimate>, counted: &Counted) {
+    fn add(&mut self, found: Option<Inversion>, counted: &Counted) {
         self.states += 1;
         let Some(found) = found else { return };
         self.answers += 1;
@@ -71,7 +72,7 @@ impl Line {
             furthest = furthest.max(((value - truth) / stddev).abs());
             all.push((value - truth, stddev));
         }
-        if found.status == Status::Ok {
+        if found.status() == Status::Ok {
             self.ok += 1;
             self.beyond += usize::from(furthest > 3.0);
         }
@@ -228,13 +229,13 @@ fn intervals_of_twenty_recipes_that_taught_and_chose_nothing_hold_95_percent_wit
             forget(&mut o);
             let Ok(found) = Relaxed.infer(&o, ours()) else { continue };
             answers += 1;
-            ok += usize::from(found.status == Status::Ok);
+            ok += usize::from(found.status() == Status::Ok);
             let of_recipe = recipes.entry(&s.preparation).or_default();
             let truths = [counted.z, counted.k, counted.eps, counted.eps_stiffness];
             for (i, (q, truth)) in QUANTITIES.into_iter().zip(truths).enumerate() {
                 let (Some(value), Some(stddev)) = (found.structure.get(q), found.stddev(q)) else { continue };
                 of_recipe[i].push((value - truth, stddev));
-                let is_beyond = found.status == Status::Ok && (value - truth).abs() > 3.0 * stddev;
+                let is_beyond = found.status() == Status::Ok && (value - truth).abs() > 3.0 * stddev;
                 beyond[i] += usize::from(is_beyond);
             }
         }

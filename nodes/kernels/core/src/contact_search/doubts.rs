@@ -2,6 +2,7 @@
 
 use super::error::SearchError;
 use super::find::of_packing;
+use crate::notes::Note;
 use crate::{Contact, OTHER_LAW, Packing};
 use std::collections::BTreeSet;
 
@@ -9,45 +10,31 @@ use std::collections::BTreeSet;
 const BEYOND: f64 = 1e-3;
 
 /// Overlaps at which the law is doubtful, planes that few contacts cross, contacts that are only in the list or only in the
-/// positions, forces of another law, beyond the friction, or that pull. A sentence each; empty for a packing that its law can have
+/// positions, forces of another law, beyond the friction, or that pull. A note each; none for a packing that its law can have
 /// made.
 ///
 /// # Errors
 /// As [`super::find`].
-pub fn doubts(packing: &Packing) -> Result<Vec<String>, SearchError> {
+pub fn doubts(packing: &Packing) -> Result<Vec<Note>, SearchError> {
     let found = of_packing(packing)?;
     let (listed, by_position) = (keys(&packing.contacts), keys(&found));
     // Overlaps below rounding may be a contact or none.
     let rounding = 64.0 * f64::EPSILON * packing.cell.matrix().amax();
-    let only = |contacts: &[Contact], others: &BTreeSet<_>, [one, many]: [&str; 2]| {
-        let missing = contacts.iter().filter(|c| c.overlap > rounding && !others.contains(&key(c)));
-        counted(packing, missing, [&format!("1 contact {one}"), &format!("contacts {many}")])
+    let only = |contacts: &[Contact], others: &BTreeSet<_>| {
+        count(packing, contacts.iter().filter(|c| c.overlap > rounding && !others.contains(&key(c))))
     };
-    let beyond = packing
-        .contacts
-        .iter()
-        .filter(|c| c.tangential_force.norm() > (1.0 + BEYOND) * packing.friction * c.normal_force.max(0.0));
-    let more = format!("more tangential force than a friction of {} allows", packing.friction);
-    let beyond =
-        counted(packing, beyond, [&format!("1 contact carries {more}"), &format!("contacts carry {more}")]);
-    let pulling = packing.contacts.iter().filter(|c| c.normal_force < 0.0);
+    let limit = |c: &Contact| (1.0 + BEYOND) * packing.friction * c.normal_force.max(0.0);
+    let beyond = count(packing, packing.contacts.iter().filter(|c| c.tangential_force.norm() > limit(c)));
+    let pulling = count(packing, packing.contacts.iter().filter(|c| c.normal_force < 0.0));
+    let difference = packing.law_difference();
     let found = [
-        packing.overlap_warning(),
-        packing.crossings_warning(),
-        only(
-            &found,
-            &listed,
-            ["overlaps by position but is not listed", "overlap by position but are not listed"],
-        ),
-        only(
-            &packing.contacts,
-            &by_position,
-            ["is listed but does not overlap by position", "are listed but do not overlap by position"],
-        ),
-        other_law(packing),
-        beyond.map(|what| format!("{what}: of another friction, or in motion")),
-        counted(packing, pulling, ["1 contact pulls", "contacts pull"])
-            .map(|what| format!("{what} (normal force below 0): the contact law only presses")),
+        packing.overlap_note(),
+        packing.crossings_note(),
+        only(&found, &listed).map(|[n, i, j]| Note::not_listed(n, i, j)),
+        only(&packing.contacts, &by_position).map(|[n, i, j]| Note::not_touching(n, i, j)),
+        (difference > OTHER_LAW).then(|| Note::other_forces(packing.law.name(), difference)),
+        beyond.map(|[n, i, j]| Note::beyond_friction(n, packing.friction, i, j)),
+        pulling.map(|[n, i, j]| Note::pulling(n, i, j)),
     ];
     Ok(found.into_iter().flatten().collect())
 }
@@ -62,26 +49,9 @@ fn keys(contacts: &[Contact]) -> BTreeSet<(u32, u32, [i8; 3])> {
     contacts.iter().map(key).collect()
 }
 
-/// Text with the number of `contacts` and the grains of the first one; `None` for an empty list.
-fn counted<'a>(
-    packing: &Packing,
-    contacts: impl Iterator<Item = &'a Contact>,
-    [one, many]: [&str; 2],
-) -> Option<String> {
-    let contacts: Vec<_> = contacts.collect();
-    let [i, j] = contacts.first().map(|c| [c.i, c.j].map(|g| packing.ids[g as usize]))?;
-    let what = if contacts.len() == 1 { one.to_owned() } else { format!("{} {many}", contacts.len()) };
-    Some(format!("{what}, the first of grains {i} and {j}"))
-}
-
-fn other_law(packing: &Packing) -> Option<String> {
-    let difference = packing.law_difference();
-    (difference > OTHER_LAW).then(|| {
-        format!(
-            "normal forces differ from the contact law by {:.1} % on average: of another contact law, another material, \
-             rounded positions, or in motion; the stiffness is that of {} contacts of this material",
-            100.0 * difference,
-            packing.law.name()
-        )
-    })
+/// Returns the number of `contacts` and the ids of the grains of the first one; `None` without contacts.
+fn count<'a>(packing: &Packing, mut contacts: impl Iterator<Item = &'a Contact>) -> Option<[f64; 3]> {
+    let first = contacts.next()?;
+    let [i, j] = [first.i, first.j].map(|grain| f64::from(packing.ids[grain as usize]));
+    Some([1.0 + contacts.count() as f64, i, j])
 }

@@ -40,6 +40,7 @@ impl Packing {
             spins: self.spins.repeat(times),
             positions,
             contacts,
+            path: self.path.clone(),
             ..*self
         })
     }

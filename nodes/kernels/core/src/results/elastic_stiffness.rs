@@ -1,6 +1,9 @@
 //! The stiffness of a packing, its bounds, and how it was found.
 
+use crate::OVERLAP_LIMIT;
+use crate::notes::Note;
 use crate::stiffness::Stiffness;
+use std::fmt;
 
 /// Method by which a stiffness was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,19 +66,14 @@ pub struct StiffnessBounds {
 pub type Elasticity = Result<Box<ElasticStiffness>, NoStiffness>;
 
 /// Why a packing has no stiffness. [`NoStiffness::is_fault`] tells what is wrong from what is loose: a gas has none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoStiffness {
     /// No two grains touch.
-    #[error("no contact network: none of the {grains} grains touches another; compress the packing first")]
     NoContacts {
         /// Number of grains.
         grains: usize,
     },
     /// Every grain was removed as a rattler.
-    #[error(
-        "no contact network: all {grains} grains are rattlers (fewer than {needed} contacts each, found recursively); \
-         compress the packing first (contacts with walls do not count)"
-    )]
     OnlyRattlers {
         /// Number of grains.
         grains: usize,
@@ -83,23 +81,36 @@ pub enum NoStiffness {
         needed: u32,
     },
     /// Contacts exist but resist no deformation of the cell.
-    #[error(
-        "no strain is resisted, so that all moduli are 0: the {contacts} contacts do not span the cell, or are too few for the \
-         springs that they have; check friction and boundaries, or compress the packing first"
-    )]
     Floppy {
         /// Number of contacts.
         contacts: usize,
     },
     /// Grains overlap by more than [`OVERLAP_LIMIT`](crate::OVERLAP_LIMIT): no contact law holds.
-    #[error(
-        "grains overlap by more than {:.0} % of a diameter, where no contact law holds: there are no moduli",
-        100.0 * crate::OVERLAP_LIMIT
-    )]
     TooDeep,
     /// The stiffness could not be computed, or the result was withheld.
-    #[error("the stiffness could not be computed: the moduli are unknown")]
     Unsolved,
+}
+
+impl From<&NoStiffness> for Note {
+    fn from(reason: &NoStiffness) -> Self {
+        match *reason {
+            NoStiffness::NoContacts { grains } => Note::no_contacts(grains as f64),
+            NoStiffness::OnlyRattlers { grains, needed } => {
+                Note::only_rattlers(grains as f64, f64::from(needed))
+            }
+            NoStiffness::Floppy { contacts } => Note::floppy(contacts as f64),
+            NoStiffness::TooDeep => Note::too_deep(OVERLAP_LIMIT),
+            NoStiffness::Unsolved => Note::unsolved(),
+        }
+    }
+}
+
+impl std::error::Error for NoStiffness {}
+
+impl fmt::Display for NoStiffness {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        Note::from(self).fmt(f)
+    }
 }
 
 impl NoStiffness {

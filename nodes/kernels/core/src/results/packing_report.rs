@@ -4,11 +4,12 @@ use super::contact_statistics::ContactStatistics;
 use super::elastic_stiffness::{ElasticStiffness, Elasticity};
 use super::fabric::Fabric;
 use super::microstructure::InferredQuantity;
-use super::spring_notes::SpringNote;
+use super::spring_notes::of_springs;
 use super::strain_ratios::StrainRatios;
 use super::stress_decomposition::StressDecomposition;
 use crate::contact::ContactLaw;
 use crate::material::Material;
+use crate::notes::Note;
 use crate::stiffness::TransverseIsotropy;
 use crate::stress::Stress;
 use crate::symmetry::{Symmetry, SymmetryClass};
@@ -89,10 +90,10 @@ impl PackingReport {
     }
 
     /// Notes on the springs of the stiffness; none without one.
-    pub fn spring_notes(&self) -> Vec<SpringNote> {
-        let sliding = self.contacts.sliding_fraction;
+    pub fn spring_notes(&self) -> Vec<Note> {
+        let (law, sliding) = (&self.law, self.contacts.sliding_fraction);
         let notes =
-            |s: &ElasticStiffness| SpringNote::on(&self.law, self.friction, sliding, s.method, s.smooth);
+            |s: &ElasticStiffness| of_springs("stiffness", law, self.friction, sliding, s.method, s.smooth);
         self.stiffness().map(notes).unwrap_or_default()
     }
 

@@ -1,7 +1,8 @@
 //! Warnings about a measured packing.
 
 use super::{ElasticStiffness, PackingReport};
-use crate::{Packing, SymmetryClass, Vec3, contact_search, non_rattlers, solid_like_share};
+use crate::notes::Note;
+use crate::{Packing, PathPosition, SymmetryClass, Vec3, contact_search, non_rattlers, solid_like_share};
 use std::collections::HashMap;
 
 /// Unbalanced force ratio above which a packing is not at rest, so that the stiffness of the network is not
@@ -55,33 +56,34 @@ const LEAST_EPS: f64 = 0.01;
 /// isostaticity have 1e-3 and more.
 const NO_RESISTANCE: f64 = 1e-6;
 
-/// Warnings about `packing` and its measurement: forces or torques that do not balance, motion, copies, contacts that its
+/// Returns warnings about `packing` and its measurement: a place within a phase, forces or torques that do not balance, motion, copies, contacts that its
 /// positions, its law or its friction contradict, bounds that do not hold. None for most packings at rest.
-pub fn warnings(packing: &Packing, report: &PackingReport) -> Vec<String> {
-    let contacts = contact_search::doubts(packing).unwrap_or_else(|e| vec![e.to_string()]);
+pub fn warnings(packing: &Packing, report: &PackingReport) -> Vec<Note> {
+    let contacts = contact_search::doubts(packing).unwrap_or_else(|e| vec![Note::remark(e.to_string())]);
+    let path = packing.path.as_ref().and_then(PathPosition::note);
     let others = [moving(packing), twisted(packing, report), copied(packing), crystalline(packing)];
-    report_warnings(report).into_iter().chain(others.into_iter().flatten()).chain(contacts).collect()
+    path.into_iter()
+        .chain(report_warnings(report))
+        .chain(others.into_iter().flatten())
+        .chain(contacts)
+        .collect()
 }
 
 /// Returns warnings about the geometry of a packing at rest, which any recorded packing may have: deep overlaps, contacts that
 /// do not cross the cell, crystals.
-pub fn geometry_warnings(packing: &Packing) -> Vec<String> {
-    let found = [packing.overlap_warning(), packing.crossings_warning(), crystalline(packing)];
+pub fn geometry_warnings(packing: &Packing) -> Vec<Note> {
+    let found = [packing.overlap_note(), packing.crossings_note(), crystalline(packing)];
     found.into_iter().flatten().collect()
 }
 
-fn restless(report: &PackingReport) -> Option<String> {
+fn restless(report: &PackingReport) -> Option<Note> {
     let unbalanced = report.unbalanced_force_ratio.filter(|u| u.is_nan() || *u > RESTLESS)?;
-    Some(format!(
-        "forces do not balance: the mean net force of a grain is {unbalanced:.2e} of the mean contact force (more than \
-         {RESTLESS}): the packing moves, or contact forces are missing or wrong; stress and stiffness are those of a packing \
-         that is not at rest"
-    ))
+    Some(Note::unbalanced_forces(unbalanced, RESTLESS))
 }
 
 /// Kinetic energy of the grains that carry force, relative to the affine motion and to their mean velocity, over F_n overlap/2
 /// summed over contacts.
-fn moving(packing: &Packing) -> Option<String> {
+fn moving(packing: &Packing) -> Option<Note> {
     let elastic: f64 = packing.contacts.iter().map(|c| 0.5 * c.normal_force.abs() * c.overlap).sum();
     let carries = non_rattlers(packing);
     let carrying = || (0..packing.grains()).filter(|g| carries[*g]);
@@ -93,17 +95,11 @@ fn moving(packing: &Packing) -> Option<String> {
         0.5 * mass(g) * (v.norm_squared() + 0.4 * radius * radius * w.norm_squared())
     };
     let kinetic: f64 = carrying().map(energy).sum();
-    (elastic > 0.0 && kinetic > MOVING * elastic).then(|| {
-        format!(
-            "the packing is in motion: the kinetic energy of its grains that carry force, about their mean velocity, is {:.1e} of \
-             half the sum of normal force times overlap (more than {MOVING}); check the velocities and their units, or let it come to rest",
-            kinetic / elastic
-        )
-    })
+    (elastic > 0.0 && kinetic > MOVING * elastic).then(|| Note::in_motion(kinetic / elastic, MOVING))
 }
 
 /// Mean net torque of the tangential forces on grains that carry force, over the mean torque of one of them, where forces balance.
-fn twisted(packing: &Packing, report: &PackingReport) -> Option<String> {
+fn twisted(packing: &Packing, report: &PackingReport) -> Option<Note> {
     let unbalanced = report.unbalanced_force_ratio.filter(|u| *u <= RESTLESS)?;
     if packing.law.rolling.is_some() || packing.friction <= 0.0 {
         return None;
@@ -122,16 +118,8 @@ fn twisted(packing: &Packing, report: &PackingReport) -> Option<String> {
     let net = carrying.iter().sum::<f64>() / carrying.len() as f64;
     let ends = (2 * packing.contacts.len()) as f64;
     let ratio = net / (torques / ends);
-    (ratio > TWISTED && net > UNEASY * unbalanced * forces / ends).then(|| {
-        format!(
-            "torques do not balance, although forces do: the mean net torque of the tangential forces of a grain is {:.0} % of the \
-             mean torque of one of them (more than {:.0} %): a resistance to rolling that the file does not name, without which \
-             shear moduli are too low, or tangential forces of another time than the positions; state it (--contact-law \
-             hertz_mindlin:KR,CR,MUR), or check the forces",
-            100.0 * ratio,
-            100.0 * TWISTED
-        )
-    })
+    (ratio > TWISTED && net > UNEASY * unbalanced * forces / ends)
+        .then(|| Note::unbalanced_torques(ratio, TWISTED))
 }
 
 /// Number of equal parts of the cell along each edge that have the same grains.
@@ -166,32 +154,21 @@ fn copies(packing: &Packing) -> usize {
     (0..3).map(along).product()
 }
 
-fn copied(packing: &Packing) -> Option<String> {
+fn copied(packing: &Packing) -> Option<Note> {
     let copies = copies(packing);
     let unit = packing.grains() / copies;
-    (copies > 1 && unit >= CRYSTAL).then(|| {
-        format!(
-            "the packing is {copies} identical copies of {unit} grains: standard deviations count each copy as independent and are too \
-             small by a factor of {:.2} or more, and a lower symmetry may be found than there is; analyze the one of {unit} grains",
-            (copies as f64).sqrt()
-        )
-    })
+    let copies = copies as f64;
+    (copies > 1.0 && unit >= CRYSTAL).then(|| Note::copies(copies, unit as f64, copies.sqrt()))
 }
 
-fn below_its_bound(report: &PackingReport) -> Option<String> {
+fn below_its_bound(report: &PackingReport) -> Option<Note> {
     let stiffness = report.stiffness()?;
     // Recordings of earlier versions have a bound for laws that resist rolling, too, where it does not hold.
     if report.law.rolling.is_some() {
         return None;
     }
     let (theta, bound) = (stiffness.tensor.bulk_voigt(), stiffness.bounds.bulk_reuss?);
-    (theta < bound * (1.0 - BELOW)).then(|| {
-        format!(
-            "Theta {:.4e} Pa is below its lower bound by the forces present, {:.4e} Pa: contacts are missing, or forces are \
-             not those of a packing at rest",
-            theta, bound
-        )
-    })
+    (theta < bound * (1.0 - BELOW)).then(|| Note::below_bound(theta, bound))
 }
 
 /// True for a packing with a stiffness that resists some strains, and not all.
@@ -204,44 +181,30 @@ fn least(stiffness: &ElasticStiffness) -> f64 {
     stiffness.tensor.0.symmetric_eigenvalues().min() / stiffness.bounds.affine.0.amax()
 }
 
-fn unresisted(report: &PackingReport) -> Option<String> {
+fn unresisted(report: &PackingReport) -> Option<Note> {
     let least = least(report.stiffness()?);
-    (least < NO_RESISTANCE).then(|| {
-        let text = if least < -NO_RESISTANCE {
-            "the stiffness is negative under some strain: the packing is stable only while that strain is held"
-        } else {
-            "some strain of the cell meets no resistance: the contacts do not span it in every direction; moduli of 0 are those of \
-             no packing at rest"
-        };
-        text.to_owned()
-    })
+    let is_negative = least < -NO_RESISTANCE;
+    let note = || if is_negative { Note::negative_stiffness() } else { Note::no_resistance() };
+    (least < NO_RESISTANCE).then(note)
 }
 
-fn overfull(report: &PackingReport) -> Option<String> {
+fn overfull(report: &PackingReport) -> Option<Note> {
     let phi = report.solid_fraction;
-    (phi > FULL).then(|| {
-        format!("solid fraction {phi:.3}: no grains fill a cell so far; check the units of cell and radii")
-    })
+    (phi > FULL).then(|| Note::overfull(phi))
 }
 
 /// Judged by the surroundings of the grains, because overlaps also raise the solid fraction of random packings.
-fn crystalline(packing: &Packing) -> Option<String> {
+fn crystalline(packing: &Packing) -> Option<Note> {
     let diameter = 2.0 * packing.radii.iter().sum::<f64>() / packing.grains() as f64;
     let is_wide = (0..3).all(|k| packing.cell.width(k) >= WIDE * diameter);
     let share =
         (is_wide && packing.size_spread() < EQUAL_SIZES).then(|| solid_like_share(packing).ok())??;
-    (share > CRYSTALLINE && share * packing.grains() as f64 >= NUCLEUS - 0.5).then(|| {
-        format!(
-            "{:.0} % of the grains have the surroundings of a crystal (by bond-orientational order; in random packings at most a few \
-             have): they have crystallised, as grains of one size do in small cells and at flat walls; the inversion was calibrated \
-             on random packings",
-            100.0 * share
-        )
-    })
+    (share > CRYSTALLINE && share * packing.grains() as f64 >= NUCLEUS - 0.5)
+        .then(|| Note::crystalline(share))
 }
 
 /// A note on a packing whose anisotropy has another axis than the reference axis, beyond its noise.
-fn another_axis(report: &PackingReport) -> Option<String> {
+fn another_axis(report: &PackingReport) -> Option<Note> {
     let (fabric, axis) = (&report.fabric, &report.fabric.principal_axis);
     let stddev = axis.contact_anisotropy_stddev?;
     let beyond = axis.contact_anisotropy.abs() - fabric.contact_anisotropy.abs();
@@ -254,25 +217,28 @@ fn another_axis(report: &PackingReport) -> Option<String> {
     // The axis of the stiffness, where it has one, scatters less.
     let is_axial = class == Some(SymmetryClass::TransverselyIsotropic);
     let found = symmetry.filter(|_| is_axial).map_or(axis.direction, |s| s.axis);
-    let named = |v: &Vec3| format!("({:.2}, {:.2}, {:.2})", v.x, v.y, v.z);
-    let angle = found.dot(&fabric.reference_axis).abs().min(1.0).acos().to_degrees();
-    Some(format!(
-        "the packing has its axis at {}, {angle:.0} degrees from the axis {} of eps, G12, G13 and the estimates: the contacts have eps {:.3} \
-         +- {stddev:.3} about {}, their own axis, and {:.3} about the one used; measure it by analyze --axis {:.2},{:.2},{:.2}",
-        named(&found),
-        named(&fabric.reference_axis),
-        axis.contact_anisotropy,
-        named(&axis.direction),
-        fabric.contact_anisotropy,
+    let used = fabric.reference_axis;
+    let angle = found.dot(&used).abs().min(1.0).acos().to_degrees();
+    let (own, eps) = (axis.direction, axis.contact_anisotropy);
+    Some(Note::another_axis(
         found.x,
         found.y,
-        found.z
+        found.z,
+        angle,
+        used.x,
+        used.y,
+        used.z,
+        eps,
+        stddev,
+        own.x,
+        own.y,
+        own.z,
+        fabric.contact_anisotropy,
     ))
 }
 
 /// Warnings that follow from the report of a packing alone.
-pub fn report_warnings(report: &PackingReport) -> Vec<String> {
-    let springs = report.spring_notes().into_iter().map(|note| format!("stiffness {note}"));
+pub fn report_warnings(report: &PackingReport) -> Vec<Note> {
     let others = [
         restless(report),
         below_its_bound(report),
@@ -280,5 +246,5 @@ pub fn report_warnings(report: &PackingReport) -> Vec<String> {
         overfull(report),
         another_axis(report),
     ];
-    others.into_iter().flatten().chain(springs).collect()
+    others.into_iter().flatten().chain(report.spring_notes()).collect()
 }

@@ -4,10 +4,10 @@
 //! and its ghosts, the grains of other subdomains that its pairs reach to. Owners send the state of ghosts through the halo
 //! after each step. So each thread reads and writes memory near to it, and waits for the others once per step.
 
-use super::compute::Compute;
 use super::decomposition::Subdomain;
 use super::state::{GrainsMut, State};
 use crate::simd::simd_f64::{F64x4, F64x8};
+use grainlab_engine::Compute;
 use std::ops::Range;
 
 /// The copies of all subdomains. They take 96 bytes per grain and subdomain.

@@ -2,20 +2,21 @@
 
 use super::checkpoint::Checkpoint;
 use super::spatial_order;
-use crate::domain::compute::Compute;
 use crate::domain::distributed_state::DistributedState;
 use crate::domain::state::{State, vector};
-use crate::error::DemError;
-use crate::observe::energy::EnergyBalance;
 use crate::observe::energy_meter::EnergyMeter;
 use crate::observe::observables::{self, Observables};
 use crate::pairs::contacts::Contacts;
 use crate::pairs::displacement_bound::DisplacementBound;
 use crate::pairs::neighbours::Neighbours;
-use crate::settings::{EngineSettings, Features};
+use crate::simd::instruction_set::Simd;
 use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Mat3, Material, Packing, PackingError, SymTensor, Vec3};
+use grainlab_engine::{Compute, EnergyBalance, EngineError, EngineSettings, Features};
 use std::borrow::Cow;
+
+/// Number of grains that is worth a thread of its own.
+const GRAINS_PER_THREAD: usize = 2000;
 
 /// Grains in a deforming periodic cell, stepped at a given strain rate.
 #[derive(Clone, Debug)]
@@ -24,6 +25,7 @@ pub struct Engine {
     pub(crate) contacts: Contacts,
     pub(super) copies: DistributedState,
     pub(super) settings: EngineSettings,
+    pub(super) simd: Simd,
     pub(super) compute: Compute,
     pub(super) neighbours: Neighbours,
     /// Bound on the approach of any pair since the neighbours were found.
@@ -50,7 +52,7 @@ impl Engine {
         radii: Vec<f64>,
         positions: &[Vec3],
         settings: EngineSettings,
-    ) -> Result<Self, DemError> {
+    ) -> Result<Self, EngineError> {
         let at_rest = Packing {
             material,
             friction: settings.friction,
@@ -63,12 +65,12 @@ impl Engine {
     ///
     /// # Errors
     /// Numbers that are no packing, settings out of their range, no grains.
-    pub fn from_packing(packing: &Packing, settings: EngineSettings) -> Result<Self, DemError> {
+    pub fn from_packing(packing: &Packing, settings: EngineSettings) -> Result<Self, EngineError> {
         packing.check()?;
         ContactLaw::new(packing.law.name(), &packing.law.parameters())?;
         settings.check()?;
         if packing.radii.is_empty() {
-            return Err(DemError::NoGrains);
+            return Err(EngineError::NoGrains);
         }
         let state = State::of(packing);
         let mut engine = Self {
@@ -76,6 +78,7 @@ impl Engine {
             state,
             copies: DistributedState::default(),
             settings,
+            simd: Simd::best(),
             compute: Compute::default(),
             neighbours: Neighbours::default(),
             since_search: DisplacementBound::new(settings.skin),
@@ -88,20 +91,31 @@ impl Engine {
         Ok(engine)
     }
 
-    /// Sets instruction set and threads. Results do not depend on them.
+    /// Sets the instruction set; the widest of this processor unless it is set. Results do not depend on it.
+    pub fn set_simd(&mut self, simd: Simd) {
+        self.simd = simd;
+    }
+
+    /// Returns the number of threads that is worth using for this many grains and cores. Pairs across the border of two
+    /// subdomains are evaluated in both, so that each thread needs some thousands of grains.
+    pub fn useful_threads(grains: usize, cores: usize) -> usize {
+        (grains / GRAINS_PER_THREAD).clamp(1, cores.max(1))
+    }
+
+    /// Sets threads, and the flag that stops a computation. Results do not depend on them.
     pub fn set_compute(&mut self, compute: Compute) {
         // The pairs are divided among as many subdomains as there are threads.
         self.has_neighbours &= compute.threads() == self.compute.threads();
         self.compute = compute;
     }
 
-    /// Instruction set and threads in use.
+    /// Threads in use, and the flag that stops a computation.
     pub fn compute(&self) -> &Compute {
         &self.compute
     }
 
     /// Sets velocities relative to the affine motion, m/s, one per grain, all finite.
-    pub fn set_velocities(&mut self, velocities: &[Vec3]) -> Result<(), DemError> {
+    pub fn set_velocities(&mut self, velocities: &[Vec3]) -> Result<(), EngineError> {
         self.one_per_grain("velocity", velocities)?;
         self.reclaim_state();
         self.state.twist.iter_mut().zip(velocities).for_each(|(t, v)| t.0[..3].copy_from_slice(v.as_slice()));
@@ -109,7 +123,7 @@ impl Engine {
     }
 
     /// Sets spins, rad/s, one per grain, all finite.
-    pub fn set_spins(&mut self, spins: &[Vec3]) -> Result<(), DemError> {
+    pub fn set_spins(&mut self, spins: &[Vec3]) -> Result<(), EngineError> {
         self.one_per_grain("angular_velocity", spins)?;
         self.reclaim_state();
         self.state.twist.iter_mut().zip(spins).for_each(|(t, w)| t.0[4..7].copy_from_slice(w.as_slice()));
@@ -120,7 +134,7 @@ impl Engine {
     pub fn add_velocities(
         &mut self,
         increments: impl IntoIterator<Item = (usize, Vec3)>,
-    ) -> Result<(), DemError> {
+    ) -> Result<(), EngineError> {
         self.reclaim_state();
         let grains = self.state.len();
         for (grain, increment) in increments {
@@ -135,7 +149,7 @@ impl Engine {
         Ok(())
     }
 
-    fn one_per_grain(&self, field: &'static str, vectors: &[Vec3]) -> Result<(), DemError> {
+    fn one_per_grain(&self, field: &'static str, vectors: &[Vec3]) -> Result<(), EngineError> {
         let (expected, found) = (self.state.len(), vectors.len());
         if expected != found {
             return Err(PackingError::Length { field, expected, found }.into());
@@ -157,7 +171,7 @@ impl Engine {
     ///
     /// # Errors
     /// A setting out of its range; nothing has changed.
-    pub fn set_settings(&mut self, settings: EngineSettings) -> Result<(), DemError> {
+    pub fn set_settings(&mut self, settings: EngineSettings) -> Result<(), EngineError> {
         settings.check()?;
         self.adopt(settings);
         Ok(())
@@ -176,9 +190,9 @@ impl Engine {
     }
 
     /// Imposes a strain rate (Voigt order, tensor components, 1/s, positive in extension).
-    pub fn set_rate(&mut self, rate: &[f64; 6]) -> Result<(), DemError> {
+    pub fn set_rate(&mut self, rate: &[f64; 6]) -> Result<(), EngineError> {
         if let Some(c) = rate.iter().position(|r| !r.is_finite()) {
-            return Err(DemError::Rate { component: SymTensor::COMPONENTS[c], value: rate[c] });
+            return Err(EngineError::Rate { component: SymTensor::COMPONENTS[c], value: rate[c] });
         }
         self.state.rate = SymTensor::from_voigt(*rate).matrix();
         Ok(())
@@ -259,7 +273,7 @@ impl Engine {
     ///
     /// # Errors
     /// A checkpoint of another number of grains; nothing has changed.
-    pub fn restore(&mut self, checkpoint: Checkpoint) -> Result<(), DemError> {
+    pub fn restore(&mut self, checkpoint: Checkpoint) -> Result<(), EngineError> {
         let (expected, found) = (self.state.len(), checkpoint.state.len());
         if expected != found {
             return Err(PackingError::Length { field: "position", expected, found }.into());
@@ -273,9 +287,9 @@ impl Engine {
     }
 
     /// Stress, tangent stiffness and force balance of the present contacts.
-    pub fn observables(&self) -> Result<Observables, DemError> {
+    pub fn observables(&self) -> Result<Observables, EngineError> {
         let state = self.current_state();
-        observables::observe(&state, &self.contacts, &self.settings, &self.compute)
+        observables::observe(&state, &self.contacts, &self.settings, &self.compute, self.simd)
     }
 
     /// Switches the energy balance on, from the present state, or off. It changes no result; steps with it are several times
@@ -315,11 +329,12 @@ impl Engine {
             law: s.law,
             friction: self.settings.friction,
             time_step: s.time_step,
+            path: None,
         }
     }
 }
 
-fn finite(field: &'static str, index: usize, v: &Vec3) -> Result<(), DemError> {
+fn finite(field: &'static str, index: usize, v: &Vec3) -> Result<(), EngineError> {
     match v.iter().find(|c| !c.is_finite()) {
         Some(value) => Err(PackingError::NotFinite { field, index, value: *value }.into()),
         None => Ok(()),

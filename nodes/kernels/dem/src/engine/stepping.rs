@@ -1,16 +1,15 @@
 //! Steps of the engine, with checks, thermostat and upkeep of the lists of pairs.
 
 use super::engine::Engine;
-use crate::error::DemError;
 use crate::force::virial::Virial;
 use crate::pairs::displacement_bound::DisplacementBound;
 use crate::pairs::images::Images;
 use crate::pairs::neighbours::Neighbours;
-use crate::settings::TimeStep;
 use crate::step::integrate::{self, SpeedStats};
 use crate::step::pass::{Pass, PassKind};
 use crate::step::time_step;
 use grainlab_core::{Mat3, SymTensor, Vec3};
+use grainlab_engine::{EngineError, TimeStep};
 
 /// Steps between two updates of the time step from the stiffness of the contacts.
 const TIME_STEP_INTERVAL: u64 = 200;
@@ -20,7 +19,7 @@ const PRUNING_INTERVAL: f64 = 100.0;
 
 impl Engine {
     /// Finds contacts and evaluates forces at the present state, without a step. Needed once before the first step.
-    pub fn initialise(&mut self) -> Result<(), DemError> {
+    pub fn initialise(&mut self) -> Result<(), EngineError> {
         self.find_neighbours()?;
         self.pass(PassKind::ForcesAsSaved, false);
         self.has_forces = true;
@@ -31,22 +30,26 @@ impl Engine {
     }
 
     /// One step: kick, drift and strain, then forces at the new positions. Returns the deformation of the cell.
-    pub fn step(&mut self) -> Result<Mat3, DemError> {
+    pub fn step(&mut self) -> Result<Mat3, EngineError> {
         self.run(1)
     }
 
     /// Several steps, with the same result as one by one but faster. Returns the deformation of the cell.
     ///
     /// # Errors
-    /// [`DemError::Stopped`] after any number of them if the flag of the compute settings is set; others if the state is lost.
-    pub fn run(&mut self, steps: u32) -> Result<Mat3, DemError> {
+    /// [`EngineError::Stopped`] after any number of them if the flag of the compute settings is set; others if the state is lost.
+    pub fn run(&mut self, steps: u32) -> Result<Mat3, EngineError> {
         self.run_steps(steps, None)
     }
 
     /// Several steps, with the stress at the end of each given to `each` (Pa, positive in compression): Love–Weber of all
     /// contact forces, dashpots included, which is the momentum that contacts carry. Where nothing moves it equals that of
     /// [`Engine::observables`], and it costs far less.
-    pub fn run_with_stress(&mut self, steps: u32, mut each: impl FnMut(SymTensor)) -> Result<Mat3, DemError> {
+    pub fn run_with_stress(
+        &mut self,
+        steps: u32,
+        mut each: impl FnMut(SymTensor),
+    ) -> Result<Mat3, EngineError> {
         self.run_steps(steps, Some(&mut each))
     }
 
@@ -54,7 +57,7 @@ impl Engine {
         &mut self,
         steps: u32,
         mut each: Option<&mut dyn FnMut(SymTensor)>,
-    ) -> Result<Mat3, DemError> {
+    ) -> Result<Mat3, EngineError> {
         if !self.has_forces {
             self.initialise()?;
         }
@@ -63,7 +66,7 @@ impl Engine {
         let mut moved: Option<SpeedStats> = None;
         for left in (0..steps).rev() {
             if self.compute.is_stopped() {
-                return Err(DemError::Stopped);
+                return Err(EngineError::Stopped);
             }
             let stats = moved.take().unwrap_or_else(|| self.move_grains());
             let deformation = integrate::deformation(&self.state);
@@ -114,12 +117,12 @@ impl Engine {
     }
 
     fn pass(&mut self, kind: PassKind, with_virial: bool) -> (Virial, SpeedStats) {
-        let Self { state, copies, contacts, settings, compute, .. } = self;
-        Pass { state, copies, contacts, settings, compute, kind, with_virial }.run()
+        let Self { state, copies, contacts, settings, compute, simd, .. } = self;
+        Pass { state, copies, contacts, settings, compute, simd: *simd, kind, with_virial }.run()
     }
 
     /// After all grains have moved: checks, thermostat, cell, lists of pairs.
-    fn finish_motion(&mut self, stats: &SpeedStats, deformation: &Mat3) -> Result<(), DemError> {
+    fn finish_motion(&mut self, stats: &SpeedStats, deformation: &Mat3) -> Result<(), EngineError> {
         self.check_speeds(stats)?;
         if let Some(limit) = self.settings.thermostat_speed {
             let mean = stats.sum_square_speed() / self.state.len() as f64;
@@ -133,7 +136,7 @@ impl Engine {
         // Beyond a strain of 1 two axes could invert at once and leave a positive volume.
         let strain = self.state.rate.norm() * self.state.time_step;
         let deformed = self.state.cell.deformed(deformation).filter(|_| strain < 1.0);
-        self.state.cell = deformed.ok_or(DemError::Cell { step: self.state.step })?;
+        self.state.cell = deformed.ok_or(EngineError::Cell { step: self.state.step })?;
         self.update_pairs(stats)
     }
 
@@ -153,7 +156,7 @@ impl Engine {
     }
 
     /// An error if a grain moved by more than a tenth of a radius, or its velocity is not finite.
-    fn check_speeds(&mut self, stats: &SpeedStats) -> Result<(), DemError> {
+    fn check_speeds(&mut self, stats: &SpeedStats) -> Result<(), EngineError> {
         let limit = 0.1 * self.state.smallest_radius / self.state.time_step;
         // If any speed is not finite, the sum is not.
         if stats.sum_square_speed().is_finite() && stats.largest_square_speed() <= limit * limit {
@@ -166,7 +169,7 @@ impl Engine {
         first.map_or(Ok(()), |grain| Err(self.unstable_error(grain)))
     }
 
-    fn unstable_error(&self, grain: usize) -> DemError {
+    fn unstable_error(&self, grain: usize) -> EngineError {
         let s = &self.state;
         let at_grain = self.contacts.touching().filter(|p| p.i as usize == grain || p.j as usize == grain);
         let largest = at_grain.max_by(|a, b| a.history.contact_radius.total_cmp(&b.history.contact_radius));
@@ -177,11 +180,11 @@ impl Engine {
                 + &format!(" with an overlap of {overlap:e} m")
         });
         let speed = s.velocities().nth(grain).map_or(0.0, |v| v.norm());
-        DemError::Unstable { step: s.step, grain: s.ids[grain], speed, time_step: s.time_step, cause }
+        EngineError::Unstable { step: s.step, grain: s.ids[grain], speed, time_step: s.time_step, cause }
     }
 
     /// Updates the lists of pairs after a motion.
-    fn update_pairs(&mut self, stats: &SpeedStats) -> Result<(), DemError> {
+    fn update_pairs(&mut self, stats: &SpeedStats) -> Result<(), EngineError> {
         let displacement = stats.largest_square_speed().sqrt() * self.state.time_step;
         let strain = self.state.rate.norm() * self.state.time_step;
         self.since_search.advance(displacement, strain);
@@ -198,7 +201,7 @@ impl Engine {
         }
     }
 
-    fn find_neighbours(&mut self) -> Result<(), DemError> {
+    fn find_neighbours(&mut self) -> Result<(), EngineError> {
         self.gather();
         let (neighbours, images) = Neighbours::find(&self.state, self.settings.skin)?;
         self.neighbours = neighbours;

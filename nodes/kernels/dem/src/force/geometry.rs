@@ -2,11 +2,11 @@
 
 use crate::domain::state::State;
 use crate::pairs::types::{PairBlock, PairSizes};
-use crate::settings::EngineSettings;
 use crate::simd::simd_f64::{BLOCK_SIZE, CheckedIndices, F64x4, F64x8, SimdF64};
 use grainlab_core::contact::{ContactSprings, SpringDashpotSlider};
 use grainlab_core::effective_radius;
 use grainlab_core::lanes::LaneVec3;
+use grainlab_engine::EngineSettings;
 
 /// Input of the force kernel from the state and the settings.
 #[derive(Clone, Copy)]

@@ -1,7 +1,7 @@
 //! Random placement of grains, with thermal velocities.
 
 use super::grid::{Grid, Neighbour};
-use crate::error::DemError;
+use crate::gas::error::GasError;
 use grainlab_core::{Cell, Vec3};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};
@@ -23,13 +23,13 @@ const ATTEMPTS: u32 = 200_000;
 /// Places spheres of these radii (m) one after the other at random without overlap (random sequential addition), which is
 /// possible up to a solid fraction of about 0.38 where they are of one size, and gives them random velocities of root mean
 /// square `speed` (m/s), of equal mean energy and without momentum. Large spheres should come first.
-pub fn random_placement(radii: &[f64], solid_fraction: f64, speed: f64, seed: u64) -> Result<Gas, DemError> {
+pub fn random_placement(radii: &[f64], solid_fraction: f64, speed: f64, seed: u64) -> Result<Gas, GasError> {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let grains = u32::try_from(radii.len()).unwrap_or(u32::MAX);
     let edge = (solid_volume(radii) / solid_fraction).cbrt();
-    let degenerate = DemError::Placement { placed: 0, grains, solid_fraction };
+    let degenerate = GasError::Placement { placed: 0, grains, solid_fraction };
     let cell = Cell::cube(edge).ok_or(degenerate)?;
-    let positions = place(radii, edge, &mut random).map_err(|placed| DemError::Placement {
+    let positions = place(radii, edge, &mut random).map_err(|placed| GasError::Placement {
         placed,
         grains,
         solid_fraction,

@@ -4,9 +4,9 @@ use super::pair_motion::{PairMotion, kinematics, lanes, vec3};
 use crate::domain::state::State;
 use crate::pairs::contacts::Contacts;
 use crate::pairs::types::Pair;
-use crate::settings::{EngineSettings, Features};
 use grainlab_core::contact::{ContactForces, ContactSprings, LawVisitor};
 use grainlab_core::{Mat3, Vec3};
+use grainlab_engine::{EngineSettings, Features};
 
 /// A contact with its forces.
 pub(super) struct ContactWork {

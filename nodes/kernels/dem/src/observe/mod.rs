@@ -2,7 +2,6 @@
 
 pub(crate) mod contact_sums;
 mod contact_works;
-pub(crate) mod energy;
 pub(crate) mod energy_meter;
 pub(crate) mod observables;
 mod pair_motion;

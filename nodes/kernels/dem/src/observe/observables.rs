@@ -2,18 +2,17 @@
 
 use super::contact_sums::{ChunkContacts, ContactSums, SlotForces, sum_chunk};
 use super::rattlers::NetForces;
-use crate::domain::compute::Compute;
 use crate::domain::state::State;
-use crate::error::DemError;
 use crate::force::geometry::ForceInput;
 use crate::pairs::contacts::Contacts;
 use crate::pairs::subdomain_pairs::SubdomainPairs;
 use crate::pairs::types::Pair;
-use crate::settings::EngineSettings;
+use crate::simd::instruction_set::Simd;
 use crate::simd::simd_f64::BLOCK_SIZE;
 use grainlab_core::contact::{ContactSprings, LawVisitor};
 use grainlab_core::stress::Stress;
 use grainlab_core::{Mat3, min_contacts};
+use grainlab_engine::{Compute, EngineError, EngineSettings};
 
 /// Observed state of the present contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,11 +37,13 @@ pub(crate) fn observe(
     contacts: &Contacts,
     settings: &EngineSettings,
     compute: &Compute,
-) -> Result<Observables, DemError> {
+    simd: Simd,
+) -> Result<Observables, EngineError> {
     let mut forces: Vec<SlotForces> = vec![[[0.0; BLOCK_SIZE]; 3]; contacts.blocks().count()];
-    let total = state
-        .law
-        .visit(&state.material, SumContacts { state, contacts, settings, compute, forces: &mut forces });
+    let total = state.law.visit(
+        &state.material,
+        SumContacts { state, contacts, settings, compute, simd, forces: &mut forces },
+    );
     if total.too_deep {
         return Err(overlap_error(state, contacts));
     }
@@ -68,6 +69,7 @@ struct SumContacts<'a> {
     contacts: &'a Contacts,
     settings: &'a EngineSettings,
     compute: &'a Compute,
+    simd: Simd,
     forces: &'a mut [SlotForces],
 }
 
@@ -75,7 +77,7 @@ impl LawVisitor for SumContacts<'_> {
     type Output = ContactSums;
 
     fn visit<S: ContactSprings>(self, springs: S) -> ContactSums {
-        let Self { state, contacts, settings, compute, forces } = self;
+        let Self { state, contacts, settings, compute, simd, forces } = self;
         let input = ForceInput::new(state, contacts.images.offsets(), settings, springs);
         let mut total = ContactSums::default();
         let mut rest = forces;
@@ -85,19 +87,19 @@ impl LawVisitor for SumContacts<'_> {
                 rest = after;
                 ChunkContacts { input, blocks, sizes, force, friction: settings.friction > 0.0 }
             });
-        let sums = compute.map_subdomains(chunks, |chunk| sum_chunk(chunk, compute.simd()));
+        let sums = compute.map_subdomains(chunks, |chunk| sum_chunk(chunk, simd));
         sums.iter().for_each(|sums| total.add(sums));
         total
     }
 }
 
 /// Names the contact with the largest overlap relative to its smaller grain.
-fn overlap_error(state: &State, contacts: &Contacts) -> DemError {
+fn overlap_error(state: &State, contacts: &Contacts) -> EngineError {
     let radii = |p: &Pair| (state.radius[p.i as usize], state.radius[p.j as usize]);
     let overlap = |p: &Pair| p.overlap(&state.radius, p.history.contact_radius);
     let depth = |p: &Pair| overlap(p) / radii(p).0.min(radii(p).1);
     let worst = contacts.touching().max_by(|a, b| depth(a).total_cmp(&depth(b)));
     let (first, second, overlap) =
         worst.map_or((0, 0, f64::NAN), |p| (state.ids[p.i as usize], state.ids[p.j as usize], overlap(&p)));
-    DemError::Overlap { step: state.step, first, second, overlap }
+    EngineError::Overlap { step: state.step, first, second, overlap }
 }

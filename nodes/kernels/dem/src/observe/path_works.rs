@@ -1,14 +1,13 @@
 //! Works of springs and sliders along the paths of their contacts.
 
 use super::contact_works::{rolling_energy, tangential_energy};
-use super::energy::EnergyBalance;
 use super::pair_motion::{kinematics, lanes, vec3};
 use crate::domain::state::State;
 use crate::pairs::contacts::Contacts;
 use crate::pairs::types::Pair;
-use crate::settings::{EngineSettings, Features};
 use grainlab_core::Vec3;
 use grainlab_core::contact::{ContactSprings, HistoryStep, LawVisitor};
+use grainlab_engine::{EnergyBalance, EngineSettings, Features};
 
 /// Works of springs and sliders from the positions of one evaluation to those of the next, under any law.
 pub(super) struct PathWorks<'a> {

@@ -1,9 +1,9 @@
 //! Bins of grains, to find neighbours in a periodic cell of any shape.
 
 use crate::domain::state::{State, vector};
-use crate::error::DemError;
 use crate::simd::simd_f64::F64x4;
 use grainlab_core::sorted_into_bins;
+use grainlab_engine::EngineError;
 
 /// Largest image number that a contact may carry.
 const MAX_IMAGE: i32 = 100;
@@ -28,7 +28,7 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    pub(super) fn new(state: &State, reach: f64) -> Result<Self, DemError> {
+    pub(super) fn new(state: &State, reach: f64) -> Result<Self, EngineError> {
         let n = state.len();
         // More bins than grains along an axis only cost memory.
         let limit = (n as f64).cbrt().ceil() as i32 + 1;
@@ -41,7 +41,7 @@ impl Grid {
         for i in 0..n {
             let s = state.cell.fractional(&vector(&state.position[i]));
             if !s.iter().all(|v| v.abs() < f64::from(MAX_IMAGE)) {
-                return Err(DemError::Image { grain: state.ids[i] });
+                return Err(EngineError::Image { grain: state.ids[i] });
             }
             let cells: [i32; 3] = std::array::from_fn(|k| s[k].floor() as i32);
             let bin: [i32; 3] = std::array::from_fn(|k| {
@@ -92,9 +92,9 @@ impl Grid {
         i: usize,
         skin: f64,
         out: &mut Vec<(u32, [i8; 3])>,
-    ) -> Result<(), DemError> {
+    ) -> Result<(), EngineError> {
         let (bin, cells) = self.bin_of[i];
-        let too_far = DemError::Image { grain: state.ids[i] };
+        let too_far = EngineError::Image { grain: state.ids[i] };
         let here = vector(&state.position[i]) - state.cell.shift(cells.map(|c| c as i8));
         let edges = state.cell.matrix();
         for &(a, image_a) in self.along(0, bin[0]) {

@@ -9,12 +9,11 @@ use super::grid::Grid;
 use super::images::Images;
 use super::subdomain_pairs::PairsBuilder;
 use super::types::{History, Pair, PairBlock, RollingBlock};
-use crate::domain::compute::Compute;
 use crate::domain::decomposition::Subdomain;
 use crate::domain::state::{State, vector};
-use crate::error::DemError;
 use crate::simd::simd_f64::BLOCK_SIZE;
 use grainlab_core::Cell;
+use grainlab_engine::{Compute, EngineError};
 use std::ops::Range;
 
 /// All pairs closer than R_i + R_j + skin when they were found, sorted by (i, j, image). Self-images are included; each pair
@@ -30,7 +29,7 @@ pub(crate) struct Neighbours {
 
 impl Neighbours {
     /// Finds the list, and the table of images that it refers to.
-    pub(crate) fn find(state: &State, skin: f64) -> Result<(Self, Images), DemError> {
+    pub(crate) fn find(state: &State, skin: f64) -> Result<(Self, Images), EngineError> {
         let mut grid = Grid::new(state, 2.0 * state.largest_radius + skin)?;
         let mut rows = ImageRows::new(state);
         let mut list = Self { start: Vec::with_capacity(state.len() + 1), ..Self::default() };

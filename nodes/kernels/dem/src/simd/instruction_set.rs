@@ -32,6 +32,14 @@ impl Simd {
         }
     }
 
+    /// Returns this instruction set.
+    ///
+    /// # Errors
+    /// A processor that lacks it.
+    pub fn if_available(self) -> Result<Simd, UnavailableSimd> {
+        if self.is_available() { Ok(self) } else { Err(UnavailableSimd(self)) }
+    }
+
     /// The instruction sets of this processor, from narrow to wide.
     pub fn available() -> Vec<Simd> {
         Self::ALL.into_iter().filter(|s| s.is_available()).collect()
@@ -78,6 +86,15 @@ impl fmt::Display for Simd {
             Simd::Avx512 => "avx512",
         })
     }
+}
+
+/// An instruction set that this processor lacks.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("this processor has no {0}; it has {available}", available = names(&Simd::available()))]
+pub struct UnavailableSimd(Simd);
+
+fn names(sets: &[Simd]) -> String {
+    sets.iter().map(Simd::to_string).collect::<Vec<_>>().join(", ")
 }
 
 /// The name of no instruction set.

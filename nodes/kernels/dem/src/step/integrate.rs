@@ -2,11 +2,11 @@
 
 use crate::domain::accumulator::ChunkForces;
 use crate::domain::state::{GrainsMut, State};
-use crate::settings::{EngineSettings, Features};
 use crate::simd::instruction_set::Simd;
 use crate::simd::kernel::Kernel;
 use crate::simd::simd_f64::{F64x4, F64x8, SimdF64, SimdRow};
 use grainlab_core::Mat3;
+use grainlab_engine::{EngineSettings, Features};
 
 /// Speeds of a step, for the checks that follow it.
 #[derive(Clone, Copy, Debug, Default)]

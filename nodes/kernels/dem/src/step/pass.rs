@@ -7,7 +7,6 @@
 
 use super::integrate::{self, Motion, SpeedStats};
 use crate::domain::accumulator::ChunkForces;
-use crate::domain::compute::Compute;
 use crate::domain::distributed_state::{DistributedState, SubdomainView};
 use crate::domain::state::{GrainsMut, State};
 use crate::force::geometry::ForceInput;
@@ -16,10 +15,10 @@ use crate::force::virial::{self, Virial};
 use crate::pairs::contacts::Contacts;
 use crate::pairs::subdomain_pairs::SubdomainPairs;
 use crate::pairs::types::PairChunk;
-use crate::settings::{EngineSettings, Features};
 use crate::simd::instruction_set::Simd;
 use crate::simd::simd_f64::CHUNK_SIZE;
 use grainlab_core::contact::{ContactSprings, LawVisitor};
+use grainlab_engine::{Compute, EngineSettings, Features};
 use std::mem::take;
 
 /// Work of a pass.
@@ -42,6 +41,7 @@ pub(crate) struct Pass<'a> {
     pub(crate) contacts: &'a mut Contacts,
     pub(crate) settings: &'a EngineSettings,
     pub(crate) compute: &'a Compute,
+    pub(crate) simd: Simd,
     pub(crate) kind: PassKind,
     /// True if the virial is summed, where forces are evaluated.
     pub(crate) with_virial: bool,
@@ -58,10 +58,10 @@ impl LawVisitor for Pass<'_> {
     type Output = (Virial, SpeedStats);
 
     fn visit<S: ContactSprings>(self, springs: S) -> Self::Output {
-        let Self { state, copies, contacts, settings, compute, kind, with_virial } = self;
+        let Self { state, copies, contacts, settings, compute, simd, kind, with_virial } = self;
         let kernel = if state.is_monodisperse() { kernel_for::<S, false> } else { kernel_for::<S, true> };
         let kernel = kernel(settings, kind == PassKind::ForcesAsSaved);
-        let over = SubdomainPass { kind, kernel, simd: compute.simd(), with_virial };
+        let over = SubdomainPass { kind, kernel, simd, with_virial };
         let offset = contacts.images.offsets();
         if let [pairs] = &mut contacts.subdomains[..] {
             copies.clear();

@@ -3,9 +3,9 @@
 use crate::domain::state::State;
 use crate::pairs::contacts::Contacts;
 use crate::pairs::types::Pair;
-use crate::settings::{EngineSettings, Features};
 use grainlab_core::contact::{ContactSprings, LawVisitor, RollingResistance};
 use grainlab_core::effective_radius;
+use grainlab_engine::{EngineSettings, Features};
 
 /// m R²/I of a sphere.
 const INERTIA_RATIO: f64 = 2.5;

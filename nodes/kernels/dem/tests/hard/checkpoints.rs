@@ -2,7 +2,8 @@
 
 use grainlab_core::contact::{RollingResistance, TangentialLaw};
 use grainlab_core::{Packing, ServoLaw};
-use grainlab_dem::{Engine, EngineSettings, Features, TimeStep};
+use grainlab_dem::Engine;
+use grainlab_engine::{EngineSettings, Features, TimeStep};
 use grainlab_testkit::Random;
 use grainlab_testkit::engine::*;
 

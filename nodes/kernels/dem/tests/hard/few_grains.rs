@@ -2,7 +2,7 @@
 
 use grainlab_core::contact::TangentialLaw;
 use grainlab_core::{Cell, Vec3};
-use grainlab_dem::TimeStep;
+use grainlab_engine::TimeStep;
 use grainlab_testkit::engine::*;
 
 /// Expected: alone, it keeps its velocity relative to a resting cell; in a straining one v = exp(−L t) v0.

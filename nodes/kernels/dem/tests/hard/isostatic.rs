@@ -1,7 +1,7 @@
 //! A packing near isostaticity.
 
 use grainlab_core::{ServoLaw, non_rattlers};
-use grainlab_dem::TimeStep;
+use grainlab_engine::TimeStep;
 use grainlab_testkit::engine::*;
 
 /// Expected: under p → 0 a frictionless packing keeps just the contacts that balance needs, 3 (N − 1) forces and 6

@@ -7,7 +7,7 @@ use grainlab_testkit::engine::*;
 
 fn cubic(overlap: f64) -> Engine {
     let mut s = setting(0.3, 0.0);
-    s.time_step = grainlab_dem::TimeStep::FractionOfStable(0.8);
+    s.time_step = grainlab_engine::TimeStep::FractionOfStable(0.8);
     engine(
         Cell::cube(2.0 * RADIUS - overlap).unwrap(),
         GLASS,

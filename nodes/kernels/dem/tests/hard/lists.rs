@@ -1,7 +1,8 @@
 //! Neighbour lists never miss a contact: after every step against brute force over all images.
 
 use grainlab_core::{Cell, Mat3, Packing, Vec3};
-use grainlab_dem::{Engine, EngineSettings};
+use grainlab_dem::Engine;
+use grainlab_engine::EngineSettings;
 use grainlab_testkit::Random;
 use grainlab_testkit::engine::*;
 

@@ -2,7 +2,8 @@
 
 use grainlab_core::contact::{ContactLaw, Linear, SpringLaw};
 use grainlab_core::{Cell, Material, Packing, PackingError, Vec3};
-use grainlab_dem::{DemError, Engine, EngineSettings, TimeStep};
+use grainlab_dem::Engine;
+use grainlab_engine::{EngineError, EngineSettings, TimeStep};
 use grainlab_testkit::engine::*;
 
 /// Expected: two grains at one point overlap by a diameter, without a normal: the look at the stress refuses them by
@@ -15,9 +16,9 @@ fn coincident_centres_are_refused() {
             let cell = Cell::cube(20.0 * RADIUS).unwrap();
             let mut e = engine(cell, GLASS, &[RADIUS; 3], &x, setting(friction, 1e-8));
             let seen = e.observables().unwrap_err();
-            assert!(matches!(seen, DemError::Overlap { first: 1, second: 2, .. }), "{seen}");
+            assert!(matches!(seen, EngineError::Overlap { first: 1, second: 2, .. }), "{seen}");
             let refused = e.step().unwrap_err();
-            let DemError::Unstable { grain, .. } = refused else { panic!("{refused}") };
+            let EngineError::Unstable { grain, .. } = refused else { panic!("{refused}") };
             assert!(grain == 1 || grain == 2);
             assert!(refused.to_string().contains("unstable at step 0"), "{refused}");
         }
@@ -35,7 +36,7 @@ fn an_overlap_above_a_tenth_of_the_smaller_diameter_is_refused() {
         };
         assert!(look(0.0999).is_ok());
         let refused = look(0.1001).unwrap_err();
-        let DemError::Overlap { step: 0, first: 0, second: 1, overlap } = refused else {
+        let EngineError::Overlap { step: 0, first: 0, second: 1, overlap } = refused else {
             panic!("{refused}")
         };
         assert!((overlap / (0.1001 * 2.0 * small * RADIUS) - 1.0).abs() < 1e-9);
@@ -55,7 +56,7 @@ fn a_velocity_that_is_not_finite_is_refused() {
             e.add_velocities(motion.into_iter().enumerate()),
         ] {
             let named =
-                |e: &DemError| matches!(e, DemError::Packing(PackingError::NotFinite { index: 1, .. }));
+                |e: &EngineError| matches!(e, EngineError::Packing(PackingError::NotFinite { index: 1, .. }));
             assert!(refused.as_ref().is_err_and(named), "{refused:?}");
         }
         assert!(e.step().is_ok() && e.speed() == 0.0);
@@ -77,11 +78,15 @@ fn a_strain_step_that_turns_the_cell_inside_out_is_refused() {
         e.step().err()
     };
     for rate in [[-1e6; 6], [-1.5e6, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 2e6]] {
-        assert!(matches!(refused(rate), Some(DemError::Cell { step: 1 })), "{rate:?}: {:?}", refused(rate));
+        assert!(
+            matches!(refused(rate), Some(EngineError::Cell { step: 1 })),
+            "{rate:?}: {:?}",
+            refused(rate)
+        );
     }
     // Two axes turned inside out at once leave a positive volume.
     let twice = refused([-1.5e6, -1.5e6, 0.0, 0.0, 0.0, 0.0]);
-    assert!(matches!(twice, Some(DemError::Cell { step: 1 })), "{twice:?}");
+    assert!(matches!(twice, Some(EngineError::Cell { step: 1 })), "{twice:?}");
 }
 
 /// Expected: a grain more than a hundred cells away is refused by its id, not given a wrong image.
@@ -94,8 +99,8 @@ fn a_grain_more_than_a_hundred_cells_away_is_refused() {
     };
     assert_eq!(prepare(98.4), Ok(()));
     assert_eq!(prepare(-98.4), Ok(()));
-    assert_eq!(prepare(101.0), Err(DemError::Image { grain: 1 }));
-    assert_eq!(prepare(-101.0), Err(DemError::Image { grain: 1 }));
+    assert_eq!(prepare(101.0), Err(EngineError::Image { grain: 1 }));
+    assert_eq!(prepare(-101.0), Err(EngineError::Image { grain: 1 }));
 }
 
 /// Expected: arrays of different lengths, numbers out of their range and no grains at all are refused by name.
@@ -143,15 +148,15 @@ fn settings_out_of_their_range_are_refused() {
             for refused in [new, e.set_settings(settings)] {
                 // The friction of a new engine is that of its packing.
                 let named = match refused {
-                    Err(DemError::Setting { name, .. }) => name,
-                    Err(DemError::Packing(PackingError::Range { field, .. })) => field,
+                    Err(EngineError::Setting { name, .. }) => name,
+                    Err(EngineError::Packing(PackingError::Range { field, .. })) => field,
                     other => panic!("{name}: {other:?}"),
                 };
                 assert_eq!(named, name);
             }
         }
         let rate = e.set_rate(&[0.0, bad.ln(), 0.0, 0.0, 0.0, 0.0]);
-        assert!(matches!(rate, Err(DemError::Rate { component: "yy", .. })), "{rate:?}");
+        assert!(matches!(rate, Err(EngineError::Rate { component: "yy", .. })), "{rate:?}");
     }
     assert_eq!(*e.settings(), sound);
     assert!(e.step().is_ok());
@@ -164,7 +169,7 @@ fn motions_of_another_number_of_grains_are_refused() {
     let x = [Vec3::zeros(), Vec3::z() * (3.0 * RADIUS)];
     let mut e = engine(cell, GLASS, &[RADIUS; 2], &x, setting(0.3, 1e-9));
     for motion in [&[Vec3::x()][..], &[Vec3::x(); 3]] {
-        let wrong = |r: Result<(), DemError>| matches!(r, Err(DemError::Packing(PackingError::Length { expected: 2, found, .. })) if found == motion.len());
+        let wrong = |r: Result<(), EngineError>| matches!(r, Err(EngineError::Packing(PackingError::Length { expected: 2, found, .. })) if found == motion.len());
         assert!(wrong(e.set_velocities(motion)) && wrong(e.set_spins(motion)));
     }
     assert!(e.add_velocities([(2, Vec3::x())]).is_err());
@@ -179,7 +184,7 @@ fn a_contact_law_out_of_its_range_is_refused() {
         Engine::from_packing(&Packing { law, ..gas(&[RADIUS; 2], 0.0, 1) }, setting(0.3, 1e-9))
     };
     for bad in [0.0, -1.0, f64::NAN] {
-        assert!(matches!(of(bad), Err(DemError::Law(_))), "{bad}");
+        assert!(matches!(of(bad), Err(EngineError::Law(_))), "{bad}");
     }
     assert!(of(1e4).is_ok());
 }

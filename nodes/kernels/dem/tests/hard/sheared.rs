@@ -3,7 +3,8 @@
 //! H and H U with an integer U of determinant 1 span the same lattice, so that every answer must be the same.
 
 use grainlab_core::{Cell, Mat3, Packing, Vec3};
-use grainlab_dem::{DemError, Engine};
+use grainlab_dem::Engine;
+use grainlab_engine::EngineError;
 use grainlab_testkit::Random;
 use grainlab_testkit::engine::*;
 
@@ -51,7 +52,7 @@ fn a_cell_sheared_past_one_half_answers_as_the_upright_cell_of_the_same_lattice(
 fn a_cell_that_leans_by_more_than_a_hundred_vectors_is_refused() {
     let p = Sample::Pressed.packing();
     let refused = recombined(&p, &shear(150.0, 0.0, 0.0)).initialise();
-    assert!(matches!(refused, Err(DemError::Image { .. })), "{refused:?}");
+    assert!(matches!(refused, Err(EngineError::Image { .. })), "{refused:?}");
 }
 
 /// Expected: shear through one half and far beyond, up to where grains meet their own images; every contact is found

@@ -1,7 +1,8 @@
 //! Stress targets that reverse, vanish, or cannot be reached, through the servo as a laboratory runs it.
 
 use grainlab_core::{ComponentControl, ServoLaw};
-use grainlab_dem::{DemError, Engine, TimeStep};
+use grainlab_dem::Engine;
+use grainlab_engine::{EngineError, TimeStep};
 use grainlab_testkit::engine::*;
 
 const PERIOD: u32 = 10;
@@ -113,7 +114,7 @@ fn a_pressure_that_cannot_be_reached_ends_at_the_overlap_that_hertz_allows() {
         }
         seen
     });
-    let Some(DemError::Overlap { overlap, .. }) = refused else { panic!("{refused:?}") };
+    let Some(EngineError::Overlap { overlap, .. }) = refused else { panic!("{refused:?}") };
     assert!(overlap > 0.2 * RADIUS && overlap < 0.21 * RADIUS, "{overlap}");
     assert!(packing(&e).validated().is_ok());
 }

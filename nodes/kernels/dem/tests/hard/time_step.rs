@@ -6,7 +6,8 @@
 use grainlab_core::contact::{RollingResistance, TangentialLaw};
 use grainlab_core::effective_radius;
 use grainlab_core::{Cell, Contact, Mat3, Packing, Vec3};
-use grainlab_dem::{DemError, Engine, TimeStep};
+use grainlab_dem::Engine;
+use grainlab_engine::{EngineError, TimeStep};
 use grainlab_testkit::Random;
 use grainlab_testkit::engine::*;
 
@@ -56,7 +57,7 @@ fn two_grains_at_105_hundredths_of_the_exact_limit_are_caught_and_stay_finite() 
         let start = e.speed();
         let refused = (0..20_000).find_map(|_| e.step().err());
         match &refused {
-            Some(DemError::Unstable { cause, .. }) => assert!(cause.contains("overlap"), "{cause}"),
+            Some(EngineError::Unstable { cause, .. }) => assert!(cause.contains("overlap"), "{cause}"),
             other => assert!(damping > 0.0 && other.is_none(), "damping {damping}: {other:?}"),
         }
         assert!(e.speed().is_finite() && e.speed() > 1e5 * start, "damping {damping}: {}", e.speed());
@@ -172,7 +173,7 @@ fn a_packing_stays_bounded_at_95_hundredths_of_its_true_limit() {
 fn a_packing_at_105_hundredths_of_its_true_limit_is_refused_within_a_hundred_steps() {
     let mut e = shaken(1.05);
     let refused = (0..100).find_map(|_| e.step().err());
-    let Some(DemError::Unstable { speed, cause, .. }) = refused else { panic!("{refused:?}") };
+    let Some(EngineError::Unstable { speed, cause, .. }) = refused else { panic!("{refused:?}") };
     assert!(speed.is_finite() && cause.contains("overlap"), "{speed} {cause}");
     assert!(packing(&e).validated().is_ok(), "the state that was refused is still finite");
 }

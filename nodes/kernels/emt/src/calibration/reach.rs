@@ -1,6 +1,7 @@
 //! Ranges of the packings of a calibration, and the distance of another packing from them.
 
 use super::laws::{NetworkState, REFERENCE_PRESSURE, REFERENCE_STIFFNESS_RATIO};
+use grainlab_core::notes::Note;
 use serde::{Deserialize, Serialize};
 
 /// Distance, in widths of a range, beyond which there is no estimate.
@@ -61,6 +62,11 @@ pub(crate) struct Outside {
 }
 
 impl Outside {
+    /// Returns the note on an estimate at such a state.
+    pub(crate) fn note(&self) -> Note {
+        Note::state_outside_calibration(self.quantity, self.value, self.range[0], self.range[1])
+    }
+
     /// True for an extrapolation, false for the ends of the range.
     pub(crate) fn is_extrapolation(&self) -> bool {
         self.distance.is_nan() || self.distance > self.end

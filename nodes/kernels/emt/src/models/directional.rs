@@ -16,6 +16,7 @@ use crate::model::Model;
 use crate::moduli::{MODULI, Moduli, Modulus};
 use crate::observation::Observation;
 use crate::point_estimate::{Jacobian, PointEstimate};
+use grainlab_core::notes::Note;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 use nalgebra::{Matrix2x3, Matrix3x2, Vector2, Vector3};
 
@@ -66,12 +67,8 @@ impl Model for Directional {
         let (found, gain) = least_squares(&isotropic, observation.pressure(), given).ok_or_else(|| {
             let [low, high] = isotropic.fitted;
             let calibration = calibration.name().to_owned();
-            EmtError::NoCoordination {
-                nearest: start(&isotropic, observation.pressure(), given),
-                low,
-                high,
-                calibration,
-            }
+            let nearest = start(&isotropic, observation.pressure(), given);
+            EmtError::from(Note::no_coordination(calibration, nearest, low, high))
         })?;
         let (k, eps) = (found[0], found[1]);
         let nu = observation.conditions.material.unwrap_or(*calibration.material()).poisson_ratio;
@@ -89,8 +86,8 @@ impl Model for Directional {
         }
         let structure =
             Microstructure::default().with(InferredQuantity::K, k).with(InferredQuantity::Eps, eps);
-        let warnings = outside_fitted(&fitted(InferredQuantity::K, calibration), &structure);
-        Ok(PointEstimate { jacobian: Some(jacobian), warnings, ..PointEstimate::exact(structure) })
+        let notes = outside_fitted(&fitted(InferredQuantity::K, calibration), &structure);
+        Ok(PointEstimate { jacobian: Some(jacobian), notes, ..PointEstimate::exact(structure) })
     }
 }
 

@@ -9,7 +9,7 @@
 //! of the model and not of the data.
 
 use super::equivalent::MAX_COORDINATION;
-use super::shear_ratio::{check_eq_10, ratio_warnings, shear_ratio};
+use super::shear_ratio::{check_eq_10, ratio_notes, shear_ratio};
 use crate::calibration::Calibration;
 use crate::conditions::{Conditions, Measured};
 use crate::domain::Domain;
@@ -21,6 +21,7 @@ use crate::moduli::{Moduli, Modulus};
 use crate::moments::eps_of_spin;
 use crate::observation::Observation;
 use crate::point_estimate::PointEstimate;
+use grainlab_core::notes::Note;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 
 /// Eqs. 12–15 with Eq. 13 corrected: model `emt`. It uses only the material of the calibration, where that of
@@ -65,16 +66,16 @@ impl Model for EffectiveMedium {
         let g = check_eq_10(conditions.gamma.value)?;
         let ratio = shear_ratio(NAME, observation)?;
         let g12 = observation.moduli.get(Modulus::G12).ok_or(EmtError::missing(NAME, Modulus::G12))?;
-        let eps = eps_of_spin(ratio - 1.0, g).ok_or(EmtError::NoAnisotropy { ratio, g })?;
+        let eps = eps_of_spin(ratio - 1.0, g).ok_or(Note::no_anisotropy(ratio, g))?;
         let one_contact = medium(1.0, eps, conditions, calibration)?;
         // Beyond the domain, directions of negative contact density can outweigh the others.
         if one_contact.pressure() <= 0.0 {
-            return Err(EmtError::NoAnisotropy { ratio, g });
+            return Err(Note::no_anisotropy(ratio, g).into());
         }
         let k = (g12 / one_contact.moduli(Eq16Reading::Corrected).psi3).powf(1.5);
         let structure =
             Microstructure::default().with(InferredQuantity::K, k).with(InferredQuantity::Eps, eps);
-        Ok(PointEstimate { warnings: ratio_warnings(ratio), ..PointEstimate::exact(structure) })
+        Ok(PointEstimate { notes: ratio_notes(ratio), ..PointEstimate::exact(structure) })
     }
 }
 

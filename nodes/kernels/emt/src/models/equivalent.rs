@@ -4,7 +4,7 @@
 //! factors that depend on the contact distribution alone. With G and Θ of Eqs. 21 and 22, G12/Θ gives k̂, and Θ then
 //! gives k: closed and unique.
 
-use super::shear_ratio::ratio_warnings;
+use super::shear_ratio::ratio_notes;
 use crate::calibration::Calibration;
 use crate::conditions::Conditions;
 use crate::domain::{Domain, Fitted, by_quantity, outside_fitted};
@@ -12,6 +12,7 @@ use crate::error::EmtError;
 use crate::moduli::{Moduli, Modulus};
 use crate::observation::Observation;
 use crate::point_estimate::PointEstimate;
+use grainlab_core::notes::Note;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 
 /// Highest coordination number of the domain: larger than the number of neighbours that equal spheres can
@@ -47,7 +48,7 @@ impl Factors {
         Moduli::paper(self.g12 * shear, self.g13 * shear, self.bulk * bulk)
     }
 
-    /// The structure of contact anisotropy `eps` that has the observed moduli, with warnings. Without Θ its
+    /// The structure of contact anisotropy `eps` that has the observed moduli, with notes. Without Θ its
     /// coordination numbers stay undetermined.
     pub(super) fn point_estimate(
         &self,
@@ -58,26 +59,23 @@ impl Factors {
         let structure = Microstructure::default().with(InferredQuantity::Eps, eps);
         let [g12, g13, theta] =
             [Modulus::G12, Modulus::G13, Modulus::Theta].map(|m| observation.moduli.get(m));
-        let mut warnings = g12.zip(g13).map_or(Vec::new(), |(g12, g13)| ratio_warnings(g13 / g12));
+        let mut notes = g12.zip(g13).map_or(Vec::new(), |(g12, g13)| ratio_notes(g13 / g12));
         let Some((g12, theta)) = g12.zip(theta) else {
-            return Ok(PointEstimate { warnings, ..PointEstimate::exact(structure) });
+            return Ok(PointEstimate { notes, ..PointEstimate::exact(structure) });
         };
         let isotropic = calibration.isotropic_for(observation.conditions.material);
         let of_isotropic = self.bulk / self.g12;
         let s = isotropic.reduced(g12 / theta * of_isotropic);
         if s >= 1.0 {
-            return Err(EmtError::ShearTooStiff {
-                ratio: g12 / theta,
-                limit: 1.0 / isotropic.reduced(of_isotropic),
-                calibration: calibration.name().into(),
-            });
+            let limit = 1.0 / isotropic.reduced(of_isotropic);
+            return Err(Note::shear_too_stiff(calibration.name().to_owned(), g12 / theta, limit).into());
         }
         let k_hat = isotropic.coordination(s);
         let denser = theta / (isotropic.bulk_modulus(k_hat, observation.pressure()) * self.bulk);
         let k = k_hat * denser;
         let structure = structure.with(InferredQuantity::K, k).with(InferredQuantity::KHat, k_hat);
-        warnings.extend(outside_fitted(&fitted(InferredQuantity::KHat, calibration), &structure));
-        Ok(PointEstimate { warnings, ..PointEstimate::exact(structure) })
+        notes.extend(outside_fitted(&fitted(InferredQuantity::KHat, calibration), &structure));
+        Ok(PointEstimate { notes, ..PointEstimate::exact(structure) })
     }
 }
 

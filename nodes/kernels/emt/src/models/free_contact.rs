@@ -15,9 +15,9 @@ use crate::observation::Observation;
 use crate::point_estimate::{Jacobian, PointEstimate};
 use crate::probe::Probe;
 use crate::series::{Interval, SeriesPrior, SeriesRow, SingleEstimate, SpeedMode, SpeedSeries};
-use crate::warning::Warning;
 use grainlab_core::Material;
 use grainlab_core::contact::SpringLaw;
+use grainlab_core::notes::Note;
 use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
 use nalgebra::DMatrix;
 use std::f64::consts::FRAC_PI_2;
@@ -84,7 +84,8 @@ impl Model for FreeContact {
         let within = |quantity, value: f64, [low, high]: [f64; 2]| {
             let calibration = calibration.name().to_owned();
             let is_inside = (low..=high).contains(&value);
-            is_inside.then_some(()).ok_or(EmtError::TooFar { quantity, value, low, high, calibration })
+            let reason = || EmtError::from(Note::too_far(quantity, calibration, value, low, high));
+            is_inside.then_some(()).ok_or_else(reason)
         };
         let is_linear = conditions.contact_law.is_some_and(|law| matches!(law.springs, SpringLaw::Linear(_)));
         if is_linear {
@@ -204,43 +205,41 @@ fn point_estimate(
         }
         covariance[(*a as usize, *a as usize)] += beyond * beyond;
     }
-    let mut warnings = Vec::new();
+    let mut notes = Vec::new();
     let level = &found.level;
     if level.is_far() {
-        warnings.push(Warning::FarLevel { ratio: level.mean.exp() });
+        notes.push(Note::far_level(level.mean.exp()));
     }
     if found.p < crate::SeriesEstimate::CONTRADICTORY {
-        warnings.push(Warning::Improbable { probability: found.p });
+        notes.push(Note::improbable(found.p));
     }
     let Interval { mean, stddev, .. } = found.stiffness_ratio;
-    warnings.push(match conditions.contact_law {
-        None => Warning::ContactsInferred { ratio: [mean, stddev], level: level.mean.exp() },
-        Some(law) => Warning::ContactsStated { law: law.springs.name() },
+    notes.push(match conditions.contact_law {
+        None => Note::contacts_inferred(mean, stddev, level.mean.exp()),
+        Some(law) => Note::contacts_stated(law.springs.name()),
     });
     let z = &found.marginals[0];
     if z.is_undetermined() {
-        warnings.push(Warning::HardlyDetermined { quantity: Z, left: z.left() });
+        notes.push(Note::hardly_determined(Z.name(), z.left()));
     }
     if found.z_beyond > SAID {
-        warnings.push(Warning::HigherZ { share: found.z_beyond });
+        notes.push(Note::higher_z(found.z_beyond));
     }
     if found.z_below > SAID {
-        warnings.push(Warning::LowerZ { share: found.z_below, lowest });
+        notes.push(Note::lower_z(found.z_below, lowest));
     }
     if conditions.stress_ratio.is_none() {
-        warnings.push(Warning::StressRatioUnknown);
+        notes.push(Note::stress_ratio_unknown());
     }
     if conditions.size_spread.is_none() {
-        warnings.push(Warning::SizesUnknown);
+        notes.push(Note::sizes_unknown());
     }
-    for Outside { quantity, value, range, .. } in outside {
-        warnings.push(Warning::StateOutsideFit { quantity, value: *value, range: *range });
-    }
+    notes.extend(outside.iter().map(Outside::note));
     PointEstimate {
         jacobian: Some(Jacobian::zeros()),
         discrepancy: Some(covariance),
         bounds: Some(bounds),
-        warnings,
+        notes,
         ..PointEstimate::exact(structure)
     }
 }

@@ -17,7 +17,7 @@ use crate::model::Model;
 use crate::moduli::{Moduli, Modulus};
 use crate::observation::Observation;
 use crate::point_estimate::PointEstimate;
-use crate::warning::Warning;
+use grainlab_core::notes::Note;
 use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
 use grainlab_core::{Material, TransverseIsotropy};
 use std::f64::consts::PI;
@@ -76,17 +76,24 @@ impl Model for HertzMindlin {
         let unit = 9.0 * bulk;
         let network = (PI / 3.0 * unit).powf(1.5) * (2.0 * PRESSURE / (PI * observation.pressure())).sqrt();
         let k = network / (phi * material.effective_young());
-        let mut warnings = vec![Warning::IsotropicContacts];
-        warnings.extend(shear.map(|shear| {
+        let mut notes = vec![Note::isotropic_contacts()];
+        notes.extend(shear.map(|shear| {
             let smooth = 0.6 * bulk;
-            Warning::StickingShare { share: (shear / smooth - 1.0) / (1.5 * mindlin(&material)) }
+            sticking_share((shear / smooth - 1.0) / (1.5 * mindlin(&material)))
         }));
         let structure = Microstructure::default().with(InferredQuantity::K, k);
         let mut discrepancy = MicrostructureCovariance::zeros();
         let at = InferredQuantity::K as usize;
         discrepancy[(at, at)] = (ERROR_OF_K * k).powi(2);
-        Ok(PointEstimate { warnings, discrepancy: Some(discrepancy), ..PointEstimate::exact(structure) })
+        Ok(PointEstimate { notes, discrepancy: Some(discrepancy), ..PointEstimate::exact(structure) })
     }
+}
+
+/// Returns the note on the share of the contacts that stick in a shear wave.
+fn sticking_share(share: f64) -> Note {
+    // To the rounding of its computation.
+    let is_share = (-1e-9..=1.0 + 1e-9).contains(&share);
+    if is_share { Note::sticking_share(share) } else { Note::sticking_share_outside(share) }
 }
 
 /// k_t/k_n of two spheres that stick, 2(1−ν)/(2−ν) (Mindlin).
@@ -134,7 +141,7 @@ impl Known {
             .or_else(|| one_direction(Modulus::C11, Modulus::G12))
             .ok_or(EmtError::missing(NAME, Modulus::Theta))?;
         if known.bulk <= 0.0 {
-            return Err(EmtError::Unstable { modulus: Modulus::Theta.name(), value: known.bulk });
+            return Err(Note::unstable(Modulus::Theta.name(), known.bulk).into());
         }
         Ok(known)
     }

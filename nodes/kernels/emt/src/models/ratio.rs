@@ -16,6 +16,7 @@ use crate::moduli::Moduli;
 use crate::moments::{Moments, eps_of_spin};
 use crate::observation::Observation;
 use crate::point_estimate::PointEstimate;
+use grainlab_core::notes::Note;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 
 /// The ratio model in one reading of Eqs. 16–18.
@@ -60,7 +61,7 @@ impl Model for Ratio {
         let g = check_eq_10(observation.conditions.gamma.value)?;
         let ratio = shear_ratio(self.name, observation)?;
         let a = ratio - 1.0;
-        let no_anisotropy = EmtError::NoAnisotropy { ratio, g };
+        let no_anisotropy = EmtError::from(Note::no_anisotropy(ratio, g));
         let eps = eps_of_spin(a, g).ok_or(no_anisotropy.clone())?;
         let factors = self.factors(eps, a, g);
         if factors.bulk <= 0.0 {

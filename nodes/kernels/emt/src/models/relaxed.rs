@@ -26,8 +26,8 @@ use crate::normal;
 use crate::observation::Observation;
 use crate::point_estimate::{Misfit, PointEstimate};
 use crate::probe::Probe;
-use crate::warning::Warning;
 use fit::{Data, Fit};
+use grainlab_core::notes::Note;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 use network_likelihood::NetworkLikelihood;
 use state::State;
@@ -87,7 +87,7 @@ impl Model for Relaxed {
         let moduli = state.invariants(network, z, eps).moduli().map(|m| m * state.unit);
         for (modulus, value) in Modulus::ALL.into_iter().zip(moduli) {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(EmtError::Unstable { modulus: modulus.name(), value });
+                return Err(Note::unstable(modulus.name(), value).into());
             }
         }
         Ok(Moduli::of_values(moduli.map(Some)))
@@ -152,18 +152,16 @@ fn point_estimate(
     domain: &Domain,
 ) -> PointEstimate {
     let point = fit.inferred(data, network, state);
-    let mut warnings = Vec::new();
+    let mut notes = Vec::new();
     if !state.stress_known {
-        warnings.push(Warning::StressRatioUnknown);
+        notes.push(Note::stress_ratio_unknown());
     }
     if !state.sizes_known {
-        warnings.push(Warning::SizesUnknown);
+        notes.push(Note::sizes_unknown());
     }
-    for outside in state.outside.iter().filter(|o| o.is_extrapolation()) {
-        let Outside { quantity, value, range, .. } = *outside;
-        warnings.push(Warning::StateOutsideFit { quantity, value, range });
-    }
-    warnings.extend(outside_fitted(&domain.fitted, &point.structure));
+    let outside = state.outside.iter().filter(|o| o.is_extrapolation());
+    notes.extend(outside.map(Outside::note));
+    notes.extend(outside_fitted(&domain.fitted, &point.structure));
     let misfit = fit
         .degrees_of_freedom(data)
         .map(|degrees_of_freedom| Misfit { chi_square: fit.chi_square, degrees_of_freedom });
@@ -175,10 +173,10 @@ fn point_estimate(
         let of_worst = 2.0 * normal::below(-worst.1) * data.used as f64;
         let probability = normal::below(-of_all).min(of_worst);
         if probability < FALSE_ALARM {
-            warnings.push(Warning::Conflict { chi_square, degrees_of_freedom, worst });
+            notes.push(Note::conflict(worst.0.name(), chi_square, degrees_of_freedom as f64, worst.1));
         } else if probability < UNLIKE {
-            warnings.push(Warning::Unlike { probability });
+            notes.push(Note::unlike(probability));
         }
     }
-    PointEstimate { misfit, warnings, ..point }
+    PointEstimate { misfit, notes, ..point }
 }

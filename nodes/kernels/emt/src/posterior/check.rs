@@ -7,11 +7,11 @@ use super::halton;
 use super::points::{Posterior, point};
 use super::proposal::Proposal;
 use super::target::TargetValue;
-use crate::estimate::{Estimate, Status};
+use crate::estimate::Inversion;
 use crate::likelihood::Predicted;
 use crate::moduli::Modulus;
 use crate::normal;
-use crate::warning::Warning;
+use grainlab_core::notes::{Note, Status};
 
 /// Probability below which an observation counts as unlike what the model predicts.
 const UNLIKELY: f64 = 1e-3;
@@ -57,10 +57,9 @@ impl Check {
     }
 
     /// Marks an estimate of the same observation as contradictory, if the observation is unlikely and nothing else says so.
-    pub fn apply(&self, estimate: &mut Estimate) {
-        if self.is_unlikely() && !estimate.warnings.iter().any(Warning::is_contradiction) {
-            estimate.warnings.push(Warning::Improbable { probability: self.probability() });
-            estimate.status = Status::of_estimate(&estimate.structure, &mut estimate.warnings);
+    pub fn apply(&self, inversion: &mut Inversion) {
+        if self.is_unlikely() && Status::of(&inversion.notes) < Status::Contradictory {
+            inversion.add(Note::improbable(self.probability()));
         }
     }
 

@@ -7,10 +7,10 @@ use super::forward::Forward;
 use super::gain::ContactKind;
 use super::prior::SeriesPrior;
 use super::sample::SpeedSeries;
-use crate::calibration::{NetworkState, Outside, RelaxationCalibration};
+use crate::calibration::{NetworkState, RelaxationCalibration};
 use crate::checks::FALSE_ALARM;
 use crate::error::EmtError;
-use crate::warning::Warning;
+use grainlab_core::notes::Note;
 use serde::Serialize;
 
 /// No z above is stated: packings of the calibration have none.
@@ -93,7 +93,7 @@ impl Interval {
 }
 
 /// The structure at one pressure.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PressureEstimate {
     /// Confining pressure, Pa.
     pub pressure: f64,
@@ -111,7 +111,7 @@ pub struct PressureEstimate {
     pub p: Option<f64>,
     /// The quantity of the state that is outside the packings of the calibration: p/E* first, then the sizes.
     #[serde(skip)]
-    pub outside: Option<Warning>,
+    pub outside: Option<Note>,
 }
 
 /// One row of the series.
@@ -303,14 +303,12 @@ pub fn infer_series(
 
 /// The first quantity of the state at this pressure that is outside the packings of the calibration. k_t/k_n is inferred, from a
 /// range of its own.
-fn outside(series: &SpeedSeries, network: &RelaxationCalibration, pressure: f64) -> Option<Warning> {
+fn outside(series: &SpeedSeries, network: &RelaxationCalibration, pressure: f64) -> Option<Note> {
     let sizes = series.size_variance[0].sqrt();
     let state = NetworkState::of(pressure, &series.material, sizes, series.stress_ratio[0]);
     let all = network.reach.outside(pressure / series.material.effective_young(), &state);
     let of_state = all.into_iter().filter(|o| o.is_extrapolation() && o.quantity != "k_t/k_n");
-    of_state
-        .map(|Outside { quantity, value, range, .. }| Warning::StateOutsideFit { quantity, value, range })
-        .next()
+    of_state.map(|outside| outside.note()).next()
 }
 
 /// Predictions without each pressure, and without each row.

@@ -8,7 +8,7 @@ use super::prior::SeriesPrior;
 use super::sample::SpeedSeries;
 use crate::calibration::RelaxationCalibration;
 use crate::error::EmtError;
-use crate::estimate::Status;
+use grainlab_core::notes::Status;
 use serde::Serialize;
 
 /// Drift of ln k_t/k_n per decade that is tried.

@@ -263,7 +263,7 @@ fn planned_errors_are_those_of_experiments() {
     let mut error = |seed| {
         let truth = simulate_series(&mut series, network, prior, Some(1.0), seed).unwrap();
         let found = super::estimate::infer_series(&series, network, prior).unwrap();
-        let at = found.pressures[0];
+        let at = &&found.pressures[0];
         let [eps, eps_stiffness] = [at.eps.unwrap(), at.eps_stiffness.unwrap()];
         let means = [at.z.mean, eps.mean, eps_stiffness.mean, found.stiffness_ratio.mean, found.level.mean];
         truth.iter().zip(means).map(|(truth, mean)| mean - truth.value).collect()

@@ -1,10 +1,11 @@
 //! Prior files, and estimates with a prior.
 
 use crate::ours;
+use grainlab_core::notes::{Code, Note, Status};
 use grainlab_core::results::{InferredQuantity, Microstructure};
 use grainlab_emt::{
-    Calibration, Conditions, Density, EmtError, Estimate, Measured, Model, Moduli, Modulus, Observation,
-    Prior, PriorError, Relaxed, Status, Warning,
+    Calibration, Conditions, Density, EmtError, Inversion, Measured, Model, Moduli, Modulus, Observation,
+    Prior, PriorError, Relaxed,
 };
 
 fn observation() -> Observation {
@@ -17,7 +18,7 @@ fn observation() -> Observation {
     Observation::new(moduli, conditions).with_relative_error(0.01)
 }
 
-fn estimate() -> Estimate {
+fn estimate() -> Inversion {
     Relaxed.infer(&observation(), ours()).unwrap()
 }
 
@@ -76,8 +77,8 @@ fn intervals_end_at_the_limits_of_the_prior_and_a_contradiction_is_a_warning() {
     assert!(with.interval(InferredQuantity::Z).unwrap()[0] >= z && with.structure.z.unwrap() > z);
     let far = Prior::default().with(InferredQuantity::Z, Density::normal(6.2, 0.1).unwrap());
     let with = without.with_prior(&far).unwrap();
-    let is_conflict = |w: &Warning| matches!(w, Warning::PriorConflict { quantity: InferredQuantity::Z, .. });
-    assert!(with.warnings.iter().any(is_conflict) && !without.warnings.iter().any(is_conflict));
+    let is_conflict = |w: &Note| w.is(Code::PriorConflict) && w.names("z");
+    assert!(with.notes.iter().any(is_conflict) && !without.notes.iter().any(is_conflict));
 }
 
 #[test]
@@ -110,8 +111,8 @@ fn a_prior_of_what_the_data_do_not_determine_is_said_to_be_unused() {
     assert_eq!(estimate.structure.eps, None);
     let prior = Prior::default().with(InferredQuantity::Eps, Density::normal(0.08, 1e-3).unwrap());
     let with = estimate.with_prior(&prior).unwrap();
-    let unused = Warning::PriorUnused { quantity: InferredQuantity::Eps };
-    assert!(with.warnings.contains(&unused) && with.structure == estimate.structure, "{:?}", with.warnings);
+    let unused = Note::prior_unused("eps");
+    assert!(with.notes.contains(&unused) && with.structure == estimate.structure, "{:?}", with.notes);
 }
 
 /// A calibration without errors of its own has those of the models with the constants of the paper.
@@ -121,7 +122,7 @@ fn exact_moduli_are_weighed_against_a_prior_by_the_error_of_the_model() {
     let estimate = grainlab_emt::model("ratio").unwrap().infer(&exact, &Calibration::PAPER).unwrap();
     let prior = Prior::default().with(InferredQuantity::K, Density::normal(5.0, 1.0).unwrap());
     let with = estimate.with_prior(&prior).unwrap();
-    let sigma = |e: &Estimate| e.stddev(InferredQuantity::K).unwrap();
+    let sigma = |e: &Inversion| e.stddev(InferredQuantity::K).unwrap();
     assert!(sigma(&with) < sigma(&estimate) && sigma(&estimate) > 0.05);
 }
 
@@ -181,7 +182,7 @@ fn a_prior_far_from_the_data_contradicts_them_and_the_structure_that_it_gives_is
     let moduli = Relaxed.predict(&structure, &observation().conditions, ours()).unwrap();
     let exact = Observation::new(moduli, observation().conditions).with_relative_error(0.01);
     let without = Relaxed.infer(&exact, ours()).unwrap();
-    assert_eq!(without.status, Status::Ok, "{:?}", without.warnings);
+    assert_eq!(without.status(), Status::Ok, "{:?}", without.notes);
     for text in [
         "[z]\ndistribution = \"uniform\"\nlow = 6\nhigh = 6.2\n",
         "[z]\ndistribution = \"normal\"\nmean = 6\nstddev = 0.1\n",
@@ -190,15 +191,12 @@ fn a_prior_far_from_the_data_contradicts_them_and_the_structure_that_it_gives_is
         "[eps]\ndistribution = \"normal\"\nmean = 0.25\nstddev = 0.002\n",
     ] {
         let with = without.with_prior(&Prior::parse(text).unwrap()).unwrap();
-        assert_eq!(with.status, Status::Contradictory, "{text}{:?}", with.warnings);
+        assert_eq!(with.status(), Status::Contradictory, "{text}{:?}", with.notes);
         let outside = with.structure.eps.is_some_and(|eps| eps > 0.22);
-        let said = with
-            .warnings
-            .iter()
-            .any(|w| matches!(w, Warning::OutsideFit { quantity: InferredQuantity::Eps, .. }));
+        let said = with.notes.iter().any(|w| w.is(Code::AnisotropyOutsideCalibration));
         assert_eq!(outside, said, "{text}{:?}", with.structure);
     }
     let z = without.structure.z.unwrap();
     let near = format!("[z]\ndistribution = \"normal\"\nmean = {z}\nstddev = 0.1\n");
-    assert_eq!(without.with_prior(&Prior::parse(&near).unwrap()).unwrap().status, Status::Ok);
+    assert_eq!(without.with_prior(&Prior::parse(&near).unwrap()).unwrap().status(), Status::Ok);
 }

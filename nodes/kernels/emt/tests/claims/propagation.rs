@@ -5,7 +5,7 @@ use crate::{model, table3};
 use grainlab_core::results::{InferredQuantity, Microstructure};
 use grainlab_core::{Mat3, Material};
 use grainlab_emt::{
-    Calibration, Conditions, EmtError, Estimate, INPUTS, Measured, Modulus, Observation, StrainRatio,
+    Calibration, Conditions, EmtError, INPUTS, Inversion, Measured, Modulus, Observation, StrainRatio,
     StrainRatioSource, models,
 };
 use grainlab_testkit::Random;
@@ -137,7 +137,7 @@ fn slopes_of_every_model_undo_those_of_its_forward_map() {
 }
 
 /// Standard deviation by the errors of the data alone.
-fn of_data(e: &Estimate, quantity: InferredQuantity) -> f64 {
+fn of_data(e: &Inversion, quantity: InferredQuantity) -> f64 {
     let i = quantity as usize;
     e.data_covariance.unwrap()[(i, i)].max(0.0).sqrt()
 }

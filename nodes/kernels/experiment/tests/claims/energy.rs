@@ -1,6 +1,6 @@
 //! The energy balance of a scene.
 
-use grainlab_dem::EnergyBalance;
+use grainlab_engine::EnergyBalance;
 use grainlab_experiment::Simulation;
 use grainlab_scene::Scene;
 

@@ -2,7 +2,7 @@
 
 use crate::{begin, path};
 use grainlab_core::Packing;
-use grainlab_experiment::{PathPosition, Simulation};
+use grainlab_experiment::Simulation;
 use grainlab_scene::{Draft, Scene};
 use std::sync::LazyLock;
 
@@ -42,7 +42,7 @@ fn recording_packings_within_phases_does_not_change_a_run() {
     assert_eq!(plain.len(), 1);
     assert_eq!(frames.last().unwrap().0, plain[0].0);
     assert_eq!(film.packings(), frames.len() as u64);
-    assert!(frames.iter().all(|(_, state, ended)| PathPosition::of(state).unwrap().end_of_phase == *ended));
+    assert!(frames.iter().all(|(p, _, ended)| p.path.as_ref().unwrap().end_of_phase == *ended));
     let strained: Vec<&Packing> = frames.iter().map(|(p, ..)| p).filter(|p| p.friction == 0.1).collect();
     assert!(strained.len() > 10, "{} packings", strained.len());
     for (n, pair) in strained.windows(2).enumerate() {
@@ -189,7 +189,7 @@ fn a_packing_that_is_due_at_the_end_of_a_phase_is_published() {
         };
         let (_, published) = run(filmed("").1);
         let (_, twice) = run(filmed("publish = true\n").1);
-        let (end, state, ended) = published.last().unwrap();
+        let (end, _, ended) = published.last().unwrap();
         if record.starts_with("every_steps") {
             // The end is a multiple of the steps by chance alone.
             assert_eq!(published.len() as u64, twice.last().unwrap().0.step / 7, "{record}");
@@ -201,7 +201,7 @@ fn a_packing_that_is_due_at_the_end_of_a_phase_is_published() {
             "{record}: {:?}",
             published.iter().map(|p| p.0.step).collect::<Vec<_>>()
         );
-        assert!(*ended && PathPosition::of(state).unwrap().end_of_phase, "{record}");
+        assert!(*ended && end.path.as_ref().unwrap().end_of_phase, "{record}");
         assert_eq!(twice.len(), 3, "{record}");
         assert_eq!(&twice.last().unwrap().0, end, "{record}");
     }

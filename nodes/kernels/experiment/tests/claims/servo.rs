@@ -1,7 +1,8 @@
 //! Stress control of a real packing: the default law from 1 kPa to 5 MPa, and Eq. 1 at its stability limit.
 
 use grainlab_core::{ComponentControl, ServoLaw};
-use grainlab_dem::{Engine, EngineSettings, TimeStep};
+use grainlab_dem::Engine;
+use grainlab_engine::{EngineSettings, TimeStep};
 use std::sync::OnceLock;
 
 /// Targets, Pa, one after the other.

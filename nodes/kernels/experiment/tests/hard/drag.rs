@@ -1,7 +1,8 @@
 //! A drag on motion produces stress without contacts that sustain it.
 
 use grainlab_core::ServoLaw;
-use grainlab_dem::{Engine, TimeStep};
+use grainlab_dem::Engine;
+use grainlab_engine::TimeStep;
 use grainlab_experiment::Simulation;
 use grainlab_scene::Scene;
 use grainlab_servo::ServoInput;

@@ -4,7 +4,8 @@ use super::relaxation::Relaxation;
 use super::settings::StrainProbe;
 use crate::error::ProbeError;
 use grainlab_core::{Contact, SymTensor};
-use grainlab_dem::{DemError, Engine, Observables};
+use grainlab_dem::{Engine, Observables};
+use grainlab_engine::EngineError;
 use std::cmp::Ordering;
 
 /// Steps between two evaluations of the stress.
@@ -53,7 +54,7 @@ pub(crate) struct RestState {
 }
 
 impl RestState {
-    pub(crate) fn new(engine: Engine) -> Result<Self, DemError> {
+    pub(crate) fn new(engine: Engine) -> Result<Self, EngineError> {
         let seen = engine.observables()?;
         let (stress, affine) = (stress(&seen), amax(&seen.tangent));
         Ok(Self { stress, contacts: contacts(&engine), affine, engine })

@@ -8,7 +8,8 @@
 //! mode, but that mode need not be known. At z = 5.1 it takes 1.4 to 1.6 times the steps of the best constant
 //! drag, which differs between packings, and fewer than half of that drag.
 
-use grainlab_dem::{DemError, Engine, EngineSettings};
+use grainlab_dem::Engine;
+use grainlab_engine::{EngineError, EngineSettings};
 
 /// r of the schedule: between 1 and 3, values from 1.25 to 1.5 take the fewest steps; 3 takes half as many
 /// again.
@@ -32,14 +33,14 @@ pub struct Relaxation {
 }
 
 impl Relaxation {
-    /// Engines with the same fixed time step ([`grainlab_dem::TimeStep::Fixed`]) within the stability bound.
+    /// Engines with the same fixed time step ([`grainlab_engine::TimeStep::Fixed`]) within the stability bound.
     /// The drags of the engines are replaced.
     pub fn new(engines: Vec<Engine>) -> Self {
         Self { engines, since: 0, square_speed: 0.0 }
     }
 
     /// One step of every engine.
-    pub fn step(&mut self) -> Result<(), DemError> {
+    pub fn step(&mut self) -> Result<(), EngineError> {
         self.since = (self.since + 1).min(LONGEST);
         let mut square_speed = 0.0;
         for engine in &mut self.engines {

@@ -18,7 +18,8 @@ use crate::error::ProbeError;
 use grainlab_core::contact::TangentialLaw;
 use grainlab_core::results::NoStiffness;
 use grainlab_core::{Packing, Stiffness, Vec3, backbone, min_contacts};
-use grainlab_dem::{Engine, EngineSettings, TimeStep};
+use grainlab_dem::Engine;
+use grainlab_engine::{EngineSettings, TimeStep};
 
 /// Before it is strained, the packing is relaxed to this fraction of the unbalanced force that ends a
 /// relaxation afterwards.

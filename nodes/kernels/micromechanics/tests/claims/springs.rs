@@ -3,7 +3,8 @@
 use crate::golden::reference;
 use crate::samples::{random, with_springs};
 use grainlab_core::contact::RollingResistance;
-use grainlab_core::results::{ElasticStiffness, SpringNote, StiffnessMethod};
+use grainlab_core::notes::Note;
+use grainlab_core::results::{ElasticStiffness, StiffnessMethod, spring_notes};
 use grainlab_core::{Packing, Vec3};
 use grainlab_micromechanics::network::Springs;
 use grainlab_micromechanics::probe::{StrainProbe, strain_probe};
@@ -29,7 +30,7 @@ fn a_packing_without_friction_has_no_tangential_springs_unless_asked_for() {
 fn contacts_that_slide_keep_their_tangential_springs_and_a_note_says_so() {
     let mut packing = Packing { friction: 0.3, ..random(60, 1.3, 4) };
     let at_rest = with_springs(&packing, Springs::default());
-    assert_eq!(SpringNote::of(&packing, at_rest.method, at_rest.smooth), []);
+    assert_eq!(spring_notes("stiffness", &packing, at_rest.method, at_rest.smooth), []);
     for c in packing.contacts.iter_mut().step_by(4) {
         let across = c.normal.cross(&Vec3::x()).normalize();
         c.tangential_force = 0.3 * c.normal_force * across;
@@ -38,8 +39,8 @@ fn contacts_that_slide_keep_their_tangential_springs_and_a_note_says_so() {
     assert!((share - 0.25).abs() < 0.01, "{share}");
     let sliding = with_springs(&packing, Springs::default());
     assert_eq!((sliding.tensor, sliding.smooth), (at_rest.tensor, false));
-    let notes = SpringNote::of(&packing, sliding.method, sliding.smooth);
-    assert_eq!(notes, [SpringNote::SlidingStuck { share }]);
+    let notes = spring_notes("stiffness", &packing, sliding.method, sliding.smooth);
+    assert_eq!(notes, [Note::sliding_stuck("stiffness", share)]);
 }
 
 #[test]
@@ -47,15 +48,18 @@ fn springs_that_differ_from_those_of_the_contacts_are_noted() {
     let network = StiffnessMethod::FrozenNetwork;
     let smooth = frictionless();
     assert_eq!(
-        SpringNote::of(&smooth, network, true),
-        [SpringNote::Frictionless, SpringNote::WithoutPrestress]
+        spring_notes("stiffness", &smooth, network, true),
+        [Note::frictionless("stiffness"), Note::without_prestress("stiffness")]
     );
-    assert_eq!(SpringNote::of(&smooth, network, false), [SpringNote::TangentialAdded]);
+    assert_eq!(spring_notes("stiffness", &smooth, network, false), [Note::tangential_added("stiffness")]);
     let mut rough = Packing { friction: 0.3, ..frictionless() };
-    assert_eq!(SpringNote::of(&rough, network, true), [SpringNote::TangentialLeftOut { friction: 0.3 }]);
+    assert_eq!(
+        spring_notes("stiffness", &rough, network, true),
+        [Note::tangential_left_out("stiffness", 0.3)]
+    );
     rough.law = rough.law.with_rolling(RollingResistance { stiffness: 1e4, damping: 0.0, friction: 0.1 });
-    assert_eq!(SpringNote::of(&rough, network, false), [SpringNote::WithoutRolling]);
-    assert_eq!(SpringNote::of(&rough, StiffnessMethod::StrainProbe, false), []);
+    assert_eq!(spring_notes("stiffness", &rough, network, false), [Note::without_rolling("stiffness")]);
+    assert_eq!(spring_notes("stiffness", &rough, StiffnessMethod::StrainProbe, false), []);
 }
 
 /// The probe has the tangential springs that the network has.

@@ -3,9 +3,10 @@
 use super::limits::{POLL_PERIOD, WINDOW};
 use super::part_topics::beside;
 use super::sender::Sender;
-use crate::bus::{Bus, PublisherId};
+use crate::bus::Bus;
 use crate::bus_error::BusError;
 use crate::demand::Demand;
+use crate::handles::PublisherId;
 use crate::typed::{Publisher, Subscription};
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
 use grainlab_msgs::{Guid, Topic, topics};
@@ -57,7 +58,7 @@ impl BulkPublisher {
         })
     }
 
-    /// The plain topic's handle, for [`Bus::readers`].
+    /// The plain topic's handle, for [`Graph::readers`](crate::Graph::readers).
     pub fn id(&self) -> PublisherId {
         self.plain
     }

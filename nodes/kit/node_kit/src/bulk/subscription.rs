@@ -3,9 +3,10 @@
 use super::limits::IDLE_CREDIT_PERIOD;
 use super::part_topics::beside;
 use super::receiver::Receiver;
-use crate::bus::{Bus, SubscriptionId};
+use crate::bus::Bus;
 use crate::bus_error::{BusError, tolerate_full};
 use crate::demand::Demand;
+use crate::handles::SubscriptionId;
 use crate::sample::{Sample, SampleInfo};
 use crate::typed::{Publisher, Subscription};
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
@@ -137,7 +138,7 @@ impl BulkSubscription {
         self.queue.len()
     }
 
-    /// The plain topic's handle, for [`Bus::writers`] and [`Bus::count_refused`].
+    /// The plain topic's handle, for [`Graph::writers`](crate::Graph::writers) and [`Statistics::count_refused`](crate::Statistics::count_refused).
     pub fn id(&self) -> SubscriptionId {
         self.plain
     }

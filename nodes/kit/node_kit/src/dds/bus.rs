@@ -3,15 +3,17 @@
 use super::background_reader::{BackgroundReader, Inboxes};
 use super::direct::{self, DdsTopic, Discovery, RawPublisher, RawSubscription};
 use super::gate::Gate;
-use super::graph::{Follower, Graph};
+use super::graph::{Endpoints, Follower};
 use super::inbox::Inbox;
 use super::network::{CROWDING_ADVICE, Network, crowding};
 use super::writer::Writer;
 use crate::admission::{Participant, Stranger};
 use crate::announced::Announced;
-use crate::bus::{Bus, Caller, PublisherId, SubscriptionId, Wake};
+use crate::bus::{Bus, Caller, Wake};
 use crate::bus_error::{BusError, create_error};
 use crate::demand::Demand;
+use crate::graph::Graph;
+use crate::handles::{PublisherId, SubscriptionId};
 use crate::identity::{Identity, Scope};
 use crate::lock::lock;
 use crate::names::Names;
@@ -19,6 +21,7 @@ use crate::offer::Offer;
 use crate::parameters::Parameters;
 use crate::sample::{Sample, SampleId};
 use crate::services::{ServiceThread, SimTime};
+use crate::statistics::Statistics;
 use crate::watchdog::OpenParticipant;
 use grainlab_console::Signals;
 use grainlab_msgs::{Guid, Published, Received, Topic, TypeInfo};
@@ -174,6 +177,18 @@ impl DdsBus {
     /// Our participant's 12-byte GUID prefix, shared by all our writers.
     pub fn participant(&self) -> [u8; 12] {
         self.participant
+    }
+
+    /// Returns the number of messages of this publisher that some reliable reader has not acknowledged yet.
+    ///
+    /// Readers are those that [`Graph::identity`] counts.
+    pub fn unacknowledged(&self, publisher: PublisherId) -> u64 {
+        self.writers.get(publisher.0).map_or(0, |w| w.raw.unacknowledged())
+    }
+
+    /// Returns true if every matched reliable reader has also matched this publisher, so that each further message is due to it.
+    pub fn is_known_to_readers(&self, publisher: PublisherId) -> bool {
+        self.writers.get(publisher.0).is_none_or(|w| w.raw.is_known_to_readers())
     }
 
     fn dds_topic(&mut self, resolved: &str, topic: &Topic) -> Result<DdsTopic, BusError> {
@@ -339,6 +354,39 @@ impl Bus for DdsBus {
         })))
     }
 
+    fn stop_flag(&self) -> Option<Arc<AtomicBool>> {
+        self.signals.as_ref().map(Signals::flag)
+    }
+
+    fn transport(&self) -> &'static str {
+        "dds"
+    }
+
+    fn flush(&mut self, timeout: Duration) -> bool {
+        let deadline = Instant::now() + timeout;
+        // DDS may match a reader of our own, too, which acknowledges only if multicast reaches it.
+        let own = |r: &Reader, topic: &str| r.topic == topic && lock(&r.inbox).demand.reliable;
+        let external = |w: &&Writer| !self.readers.iter().any(|r| own(r, &w.topic));
+        self.writers.iter().filter(external).all(|writer| {
+            let left = deadline.saturating_duration_since(Instant::now());
+            writer.raw.wait_for_acknowledgments(left)
+        })
+    }
+
+    fn now(&self) -> Duration {
+        self.start.elapsed()
+    }
+
+    fn node_nanos(&self) -> u64 {
+        if self.declared.use_sim_time() { self.sim_time.load(Ordering::Relaxed) } else { self.wall_nanos() }
+    }
+
+    fn wall_nanos(&self) -> u64 {
+        direct::wall_nanos()
+    }
+}
+
+impl Graph for DdsBus {
     fn readers(&self, publisher: PublisherId) -> usize {
         self.writers
             .get(publisher.0)
@@ -349,14 +397,6 @@ impl Bus for DdsBus {
         self.writers
             .get(publisher.0)
             .is_some_and(|w| lock(&self.follower).graph.matches_of(w.id, |_| true) > 0)
-    }
-
-    fn unacknowledged(&self, publisher: PublisherId) -> u64 {
-        self.writers.get(publisher.0).map_or(0, |w| w.raw.unacknowledged())
-    }
-
-    fn is_known_to_readers(&self, publisher: PublisherId) -> bool {
-        self.writers.get(publisher.0).is_none_or(|w| w.raw.is_known_to_readers())
     }
 
     fn writers(&self, subscription: SubscriptionId) -> usize {
@@ -371,7 +411,7 @@ impl Bus for DdsBus {
     }
 
     fn misfits(&self, topic: &Topic) -> Vec<Participant> {
-        let misfits = |graph: &Graph, guid: &Guid| graph.misfit(guid, &topic.info).is_some();
+        let misfits = |graph: &Endpoints, guid: &Guid| graph.misfit(guid, &topic.info).is_some();
         self.writers_of(topic, misfits).iter().map(Guid::participant).collect()
     }
 
@@ -383,6 +423,24 @@ impl Bus for DdsBus {
         lock(&self.follower).graph.offers(|guid| !self.gate.admits(guid))
     }
 
+    fn identity(&self) -> Identity {
+        self.gate.identity()
+    }
+
+    fn strangers(&self) -> Vec<Stranger> {
+        self.gate.strangers()
+    }
+
+    fn describe(&self, writer: Guid) -> Stranger {
+        self.gate.describe(&writer.participant())
+    }
+
+    fn crowding(&self) -> Option<String> {
+        crowding(&self.context).map(|sentence| format!("{sentence}: {CROWDING_ADVICE}"))
+    }
+}
+
+impl Statistics for DdsBus {
     fn count_published(&mut self, publisher: PublisherId, topic: &Topic) -> Result<(), BusError> {
         let resolved = self.names.resolve(topic.name)?;
         let writer = self.writers.get_mut(publisher.0).ok_or(BusError::Handle("count_published"))?;
@@ -410,52 +468,5 @@ impl Bus for DdsBus {
         if let Some(reader) = self.readers.get_mut(subscription.0) {
             reader.refused += 1;
         }
-    }
-
-    fn stop_flag(&self) -> Option<Arc<AtomicBool>> {
-        self.signals.as_ref().map(Signals::flag)
-    }
-
-    fn transport(&self) -> &'static str {
-        "dds"
-    }
-
-    fn identity(&self) -> Identity {
-        self.gate.identity()
-    }
-
-    fn strangers(&self) -> Vec<Stranger> {
-        self.gate.strangers()
-    }
-
-    fn describe(&self, writer: Guid) -> Stranger {
-        self.gate.describe(&writer.participant())
-    }
-
-    fn crowding(&self) -> Option<String> {
-        crowding(&self.context).map(|sentence| format!("{sentence}: {CROWDING_ADVICE}"))
-    }
-
-    fn flush(&mut self, timeout: Duration) -> bool {
-        let deadline = Instant::now() + timeout;
-        // DDS may match a reader of our own, too, which acknowledges only if multicast reaches it.
-        let own = |r: &Reader, topic: &str| r.topic == topic && lock(&r.inbox).demand.reliable;
-        let external = |w: &&Writer| !self.readers.iter().any(|r| own(r, &w.topic));
-        self.writers.iter().filter(external).all(|writer| {
-            let left = deadline.saturating_duration_since(Instant::now());
-            writer.raw.wait_for_acknowledgments(left)
-        })
-    }
-
-    fn now(&self) -> Duration {
-        self.start.elapsed()
-    }
-
-    fn node_nanos(&self) -> u64 {
-        if self.declared.use_sim_time() { self.sim_time.load(Ordering::Relaxed) } else { self.wall_nanos() }
-    }
-
-    fn wall_nanos(&self) -> u64 {
-        direct::wall_nanos()
     }
 }

@@ -13,14 +13,14 @@ use std::sync::Arc;
 pub(super) struct Follower {
     discovery: Discovery,
     gate: Arc<Gate>,
-    pub(super) graph: Graph,
+    pub(super) graph: Endpoints,
     /// The graph changed, and no wait has returned it yet.
     changed: bool,
 }
 
 impl Follower {
     pub(super) fn new(discovery: Discovery, gate: Arc<Gate>, own: Participant) -> Self {
-        Self { discovery, gate, graph: Graph { own, ..Graph::default() }, changed: false }
+        Self { discovery, gate, graph: Endpoints { own, ..Endpoints::default() }, changed: false }
     }
 
     /// Processes the queued changes; true if one changed the graph.
@@ -44,7 +44,7 @@ impl Follower {
 
 /// Endpoints of other processes, and the matches of those of this process.
 #[derive(Default)]
-pub(super) struct Graph {
+pub(super) struct Endpoints {
     own: Participant,
     /// Remote writers: their DDS topic, and what they offer there.
     writers: BTreeMap<Guid, (String, Option<Offer>)>,
@@ -52,7 +52,7 @@ pub(super) struct Graph {
     matches: BTreeMap<Guid, BTreeSet<Guid>>,
 }
 
-impl Graph {
+impl Endpoints {
     /// Processes one change; true if it changed the graph.
     fn apply(&mut self, change: Change) -> bool {
         match change {

@@ -3,13 +3,17 @@
 use super::state::{MemoryState, Reader, Writer};
 use crate::BULK_LIMIT;
 use crate::admission::{Admission, Participant, Stranger};
-use crate::bus::{Bus, Caller, PublisherId, SubscriptionId, Wake};
+use crate::announced::Announced;
+use crate::bus::{Bus, Caller, Wake};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
+use crate::graph::Graph;
+use crate::handles::{PublisherId, SubscriptionId};
 use crate::identity::Identity;
 use crate::names::Names;
 use crate::offer::Offer;
 use crate::sample::{Sample, SampleId};
+use crate::statistics::Statistics;
 use grainlab_msgs::{Guid, Published, Received, Topic};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -145,6 +149,24 @@ impl Bus for MemoryBus {
         if self.state.borrow().time.alarm().is_some() { usize::MAX } else { BULK_LIMIT }
     }
 
+    fn flush(&mut self, _timeout: Duration) -> bool {
+        true
+    }
+
+    fn now(&self) -> Duration {
+        self.state.borrow().time.now()
+    }
+
+    fn wall_nanos(&self) -> u64 {
+        self.state.borrow().time.wall_nanos()
+    }
+
+    fn transport(&self) -> &'static str {
+        "memory"
+    }
+}
+
+impl Graph for MemoryBus {
     fn readers(&self, publisher: PublisherId) -> usize {
         let state = self.state.borrow();
         let Some(writer) = self.writers.get(publisher.0).map(|w| &state.writers[*w]) else { return 0 };
@@ -192,6 +214,20 @@ impl Bus for MemoryBus {
         offers
     }
 
+    fn identity(&self) -> Identity {
+        *self.admission.identity()
+    }
+
+    fn strangers(&self) -> Vec<Stranger> {
+        self.admission.strangers()
+    }
+
+    fn describe(&self, writer: Guid) -> Stranger {
+        self.admission.describe(&writer.participant())
+    }
+}
+
+impl Statistics for MemoryBus {
     fn count_published(&mut self, publisher: PublisherId, topic: &Topic) -> Result<(), BusError> {
         let resolved = self.names.resolve(topic.name)?;
         let writer = *self.writers.get(publisher.0).ok_or(BusError::Handle("count_published"))?;
@@ -226,28 +262,8 @@ impl Bus for MemoryBus {
         }
     }
 
-    fn identity(&self) -> Identity {
-        *self.admission.identity()
-    }
-
-    fn strangers(&self) -> Vec<Stranger> {
-        self.admission.strangers()
-    }
-
-    fn describe(&self, writer: Guid) -> Stranger {
-        self.admission.describe(&writer.participant())
-    }
-
-    fn flush(&mut self, _timeout: Duration) -> bool {
-        true
-    }
-
-    fn now(&self) -> Duration {
-        self.state.borrow().time.now()
-    }
-
-    fn wall_nanos(&self) -> u64 {
-        self.state.borrow().time.wall_nanos()
+    fn announced(&self, _subscription: SubscriptionId) -> Vec<Announced> {
+        Vec::new()
     }
 }
 

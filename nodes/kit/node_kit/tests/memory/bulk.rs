@@ -3,7 +3,8 @@
 use crate::{MS, bus_of};
 use grainlab_msgs::topics;
 use grainlab_node_kit::{
-    BULK_LIMIT, BulkPublisher, BulkSubscription, Bus, BusError, Demand, Faults, Hub, MemoryBus, Names, Sample,
+    BULK_LIMIT, BulkPublisher, BulkSubscription, Bus, BusError, Demand, Faults, Hub, MemoryBus, Names,
+    Sample, Statistics,
 };
 
 /// A body that is different for each `n`.

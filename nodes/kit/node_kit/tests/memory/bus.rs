@@ -4,8 +4,8 @@ use crate::{MS, bus_of};
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::topics;
 use grainlab_node_kit::{
-    Actor, Bus, Demand, Exit, Faults, Hub, MemoryBus, Next, Node, NodeError, Publisher, Subscription, Wake,
-    Worker, run_until,
+    Actor, Bus, Demand, Exit, Faults, Graph, Hub, MemoryBus, Next, Node, NodeError, Publisher, Statistics,
+    Subscription, Wake, Worker, run_until,
 };
 use std::cell::RefCell;
 use std::rc::Rc;

@@ -3,7 +3,9 @@
 use super::{Role, TIME_LIMIT, claim};
 use grainlab_msgs::msg::StrainRate;
 use grainlab_msgs::{Guid, topics};
-use grainlab_node_kit::{Bus, BusError, DdsBus, Demand, Exit, Liveliness, Names, Network, PeerWatch, Report};
+use grainlab_node_kit::{
+    Bus, BusError, DdsBus, Demand, Exit, Graph, Liveliness, Names, Network, PeerWatch, Report, Statistics,
+};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 

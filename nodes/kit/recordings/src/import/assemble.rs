@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use grainlab_core::contact_search::{self, SearchError};
+use grainlab_core::notes::texts;
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 use grainlab_msgs::boundary::packing_header;
 
@@ -204,6 +205,7 @@ pub(super) fn packing(
         law: settings.law,
         friction: settings.friction,
         time_step: state.time_step,
+        path: None,
     }
     .validated()?;
     packing.contacts = match listed {
@@ -224,7 +226,7 @@ pub(super) fn packing(
             std::mem::take(&mut packing.contacts)
         }
     };
-    notes.extend(contact_search::doubts(&packing)?);
+    notes.extend(texts(&contact_search::doubts(&packing)?));
     let blurred = rounding.and_then(|rounding| rounding.noticeable(&packing));
     notes.extend(blurred.map(|blurred| {
         format!("{blurred}: contacts, forces and stiffness are uncertain accordingly; {ALL_DIGITS}")

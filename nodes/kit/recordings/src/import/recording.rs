@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use grainlab_console::Failure;
 use grainlab_core::Packing;
+use grainlab_core::notes::texts;
 use grainlab_msgs::{Message as _, msg, topics};
 
 use super::ImportOptions;
@@ -84,6 +85,6 @@ pub fn packing(message: &Message) -> Result<Imported, ImportError> {
     let source = format!("recording, {scene}, step {}", packing.step);
     let (header, run_state) = (decoded.header, decoded.run_state);
     let stored = message.channel.stored.note().map(|note| format!("{}: {note}", message.channel.topic));
-    let notes = stored.into_iter().chain(packing.overlap_fault()).collect();
+    let notes = stored.into_iter().chain(texts(&packing.overlap_fault())).collect();
     Ok(Imported { step: packing.step, packing, header, run_state, source, rounding: None, notes })
 }

@@ -1,6 +1,7 @@
 //! The declaration of a topic in a recording.
 
 use crate::reader::ChannelInfo;
+use grainlab_any_message::{Comparison, Schema};
 use grainlab_msgs::{Qos, Topic, TypeInfo};
 
 /// Encoding of schemas that are message files.
@@ -40,6 +41,17 @@ impl TopicSpec {
             type_hash: channel.type_hash.clone(),
             qos: channel.qos.clone(),
         }
+    }
+
+    /// Returns true if messages of `earlier` are read as messages of this topic, by the names of their fields.
+    pub(super) fn continues(&self, earlier: &Self) -> bool {
+        let same = |of: fn(&Self) -> [&str; 4]| of(self) == of(earlier);
+        let parsed = |spec: &Self| Schema::parse(&spec.ros_type, &spec.definition).ok();
+        let is_read = || match (parsed(earlier), parsed(self)) {
+            (Some(earlier), Some(own)) => !matches!(earlier.compare(&own), Comparison::Differs(_)),
+            _ => false,
+        };
+        same(|spec| [&spec.name, &spec.ros_type, &spec.schema_encoding, &spec.qos]) && is_read()
     }
 
     /// A channel of any known type; its QoS is unknown.

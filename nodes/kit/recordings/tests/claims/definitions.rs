@@ -90,3 +90,35 @@ fn a_definition_with_a_renamed_field_is_refused_by_name_although_the_bytes_would
     assert!(recording.check().refused);
     assert_eq!(recording.info().topics[0].definition, "refused");
 }
+
+#[test]
+fn a_run_of_an_earlier_version_goes_on_in_a_file_with_the_definitions_of_this_one() {
+    let root = tempfile::tempdir().unwrap();
+    let packing = two_grains();
+    let (own, later) = (to_cdr(&message_of(&packing)), to_cdr(&message_of(&Packing { step: 9, ..packing })));
+    let is_path = |line: &str| line.split_whitespace().take(2).eq(["PathPosition[]", "path"]);
+    let lines = msg::Packing::DEFINITION.split_inclusive('\n');
+    let earlier: String = lines.filter(|line| !is_path(line)).collect();
+    let parsed = |text: &str| Schema::parse(msg::Packing::TYPE, text).unwrap();
+    let Comparison::Mapped(there) = parsed(msg::Packing::DEFINITION).compare(&parsed(&earlier)) else {
+        panic!("the definitions do not differ")
+    };
+    let topic = Topic::by_name(topics::PACKING.name).unwrap();
+    let spec = TopicSpec::of_contract(topic, "/packing");
+    let file = written(root.path(), &earlier, &there.apply(&own).unwrap());
+    let directory = file.parent().unwrap();
+    for (sequence, payload) in [(2, &later), (3, &own)] {
+        // The second time, the recording has both definitions.
+        let mut run = RunWriter::append(directory, "run", std::slice::from_ref(&spec), options()).unwrap();
+        run.write("/packing", &sample(SIMULATOR, sequence, START, payload)).unwrap();
+        run.finish().unwrap();
+    }
+    let recording = Recording::open(directory).unwrap();
+    let all: Vec<_> = recording.messages(&Selection::default()).unwrap().collect();
+    let read: Vec<_> = all.iter().map(|message| message.own_bytes().unwrap().into_owned()).collect();
+    assert_eq!(read, [own.clone(), later, own]);
+    assert_eq!(recording.check().warnings, []);
+    let renamed = TopicSpec { definition: spec.definition.replace(" shear_modulus", " modulus"), ..spec };
+    let refused = RunWriter::append(directory, "run", &[renamed], options()).err().unwrap().to_string();
+    assert!(refused.contains("already recorded with another type"), "{refused}");
+}

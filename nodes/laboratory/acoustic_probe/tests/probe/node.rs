@@ -1,11 +1,14 @@
 use crate::sample::{measurement, message};
 use grainlab_acoustic_probe::{AcousticProbe, DECLINED_STEP, MeasureError, Settings, measure, messages};
 use grainlab_core::Material;
+use grainlab_core::notes::Code;
 use grainlab_core::results::NoStiffness;
 use grainlab_msgs::boundary::WaveSpeedsReading;
 use grainlab_msgs::msg::{Packing, WaveSpeeds, Waveform};
 use grainlab_msgs::{to_cdr, topics};
-use grainlab_node_kit::{Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Subscription};
+use grainlab_node_kit::{
+    Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Statistics, Subscription,
+};
 use grainlab_testkit::packings::{DIAMETER, OVERLAP, lattice};
 
 /// A publisher of packings that receives the results.
@@ -77,7 +80,7 @@ fn speeds_go_out_with_header_step_and_what_an_instrument_knows() {
     let phi = std::f64::consts::PI / 6.0 * (DIAMETER / edge).powi(3);
     assert!((reading.solid_fraction.unwrap() / phi - 1.0).abs() < 1e-12);
     assert_eq!(reading.grain_shear_modulus, Material::GLASS.shear_modulus);
-    assert!(reading.warnings[0].starts_with("left out: "), "{:?}", reading.warnings);
+    assert!(reading.notes[0].is(Code::LeftOut), "{:?}", reading.notes);
     assert_eq!(waveform.checked().unwrap().channel, ["receiver 1", "receiver 2"]);
     assert_eq!(waveform.sample[4..], [0.0, 1e-6, 0.0, -1e-6]);
     assert_eq!((value(&node, "measured"), value(&node, "speeds")), ("1".into(), "2".into()));

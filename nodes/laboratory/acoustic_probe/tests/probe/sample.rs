@@ -1,7 +1,8 @@
 //! A packing with known properties, and a result of its measurement.
 
 use grainlab_acoustics::Channel;
-use grainlab_acoustics::{AcousticsError, EffectiveDensity, Measurement, Trace};
+use grainlab_acoustics::{EffectiveDensity, Measurement, Trace};
+use grainlab_core::notes::Note;
 use grainlab_core::{Mat3, MeasuredWave, Vec3, WaveMethod, WaveSpeed};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::msg;
@@ -38,8 +39,6 @@ pub(crate) fn measurement() -> Measurement {
             start: 0.0,
             channels: vec![channel(4e-3), channel(8e-3)],
         }],
-        warnings: vec![grainlab_acoustics::Warning::LeftOut(AcousticsError::NoLatticePlane {
-            direction: [0.0, 0.6, 0.8],
-        })],
+        notes: vec![Note::left_out("no lattice plane")],
     }
 }

@@ -1,11 +1,16 @@
 //! Invalid messages, and runs that cannot continue.
 
-use grainlab_buskit::{Bench, Kind, Record, exit_of};
-use grainlab_core::{ComponentControl, Packing};
-use grainlab_dem_simulator::Settings;
+use grainlab_buskit::{Bench, Kind, Record, exit_of, tiny};
+use grainlab_core::{ComponentControl, Mat3, Packing};
+use grainlab_dem::Dem;
+use grainlab_dem_simulator::{DemSimulator, Settings};
+use grainlab_engine::{Compute, EngineError, EngineFactory, EngineSettings, Observables, ParticleEngine};
 use grainlab_msgs::msg::{self, PackingReport, RunState, StrainRate, Stress};
 use grainlab_msgs::{to_cdr, topics};
-use grainlab_node_kit::{Actor, Bus, Demand, Exit, Next, Node, NodeError, Publisher, Subscription};
+use grainlab_node_kit::{
+    Actor, Bus, Demand, Exit, Next, Node, NodeError, Publisher, Statistics, Subscription,
+};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// A servo that answers `honest` requests correctly and then invalidly.
@@ -161,4 +166,96 @@ fn a_packing_with_an_index_out_of_range_is_refused_and_the_analyzer_continues() 
     assert_eq!(report.source_step, good.step);
     let last = |record: &Record| record.bodies(&topics::PACKING_REPORT).last().cloned();
     assert_eq!(last(&bench.record.borrow()), last(&record));
+}
+
+/// Our engine, whose stress is not a number from a solver step on.
+#[derive(Debug)]
+struct Diverging(Box<dyn ParticleEngine>, u64);
+
+/// Starts engines that diverge after this number of solver steps.
+#[derive(Debug)]
+struct DivergesAfter(u64);
+
+impl EngineFactory for DivergesAfter {
+    fn start(
+        &self,
+        packing: &Packing,
+        settings: &EngineSettings,
+        rate: &[f64; 6],
+        compute: &Compute,
+    ) -> Result<Box<dyn ParticleEngine>, EngineError> {
+        let engine = Dem::default().start(packing, settings, rate, compute)?;
+        let step = engine.steps() + self.0;
+        Ok(Box::new(Diverging(engine, step)))
+    }
+}
+
+impl ParticleEngine for Diverging {
+    fn settings(&self) -> &EngineSettings {
+        self.0.settings()
+    }
+
+    fn begin_phase(&mut self, settings: &EngineSettings) -> Result<(), EngineError> {
+        self.0.begin_phase(settings)
+    }
+
+    fn set_rate(&mut self, rate: &[f64; 6]) -> Result<(), EngineError> {
+        self.0.set_rate(rate)
+    }
+
+    fn rate(&self) -> [f64; 6] {
+        self.0.rate()
+    }
+
+    fn run(&mut self, steps: u32) -> Result<(Mat3, Observables), EngineError> {
+        let (deformation, _) = self.0.run(steps)?;
+        Ok((deformation, self.observables()?))
+    }
+
+    fn steps(&self) -> u64 {
+        self.0.steps()
+    }
+
+    fn time(&self) -> f64 {
+        self.0.time()
+    }
+
+    fn time_step(&self) -> f64 {
+        self.0.time_step()
+    }
+
+    fn observables(&self) -> Result<Observables, EngineError> {
+        let mut seen = self.0.observables()?;
+        if self.steps() >= self.1 {
+            seen.stress.tensor.zz = f64::NAN;
+        }
+        Ok(seen)
+    }
+
+    fn packing(&self, deformation: Mat3) -> Result<Packing, EngineError> {
+        self.0.packing(deformation)
+    }
+}
+
+#[test]
+fn a_stress_that_is_not_a_number_ends_the_run_with_its_state_saved_and_is_not_published() {
+    let bench = Bench::new(0);
+    let mut bus = bench.bus("dem_simulator");
+    let engine = Arc::new(DivergesAfter(1000));
+    let simulator = DemSimulator::with_engine(&mut bus, tiny(), engine, None, Settings::default()).unwrap();
+    let mut actors =
+        vec![bench.node(Kind::Recorder), Actor::new(Box::new(simulator), bus), bench.node(Kind::Servo)];
+    bench.run(&mut actors, |actors| actors[1].ended.is_some());
+    bench.pass(&mut actors[..1], Duration::ZERO);
+    assert_eq!(exit_of(&actors[1]), Some(Exit::PhysicsInvalid));
+    let record = bench.record.take();
+    let end: RunState = record.last(&topics::RUN_STATE).unwrap();
+    assert_eq!(end.state, RunState::FAILED);
+    assert_eq!(end.message, "Stress.stress.zz = NaN is refused: it must be finite");
+    let saved: msg::Packing = record.last(&topics::PACKING).unwrap();
+    assert_eq!((saved.step, end.last_packing_step), (end.step, end.step));
+    let sent = record.messages::<Stress>(&topics::STRESS);
+    // One request each 100 steps.
+    assert_eq!(sent.len(), 10);
+    assert!(sent.iter().all(|s| s.step < saved.step && s.stress.zz.is_finite()));
 }

@@ -6,7 +6,7 @@ use grainlab_dem_simulator::{DemSimulator, Settings};
 use grainlab_msgs::boundary::BoundaryError;
 use grainlab_msgs::msg::{self, RunState};
 use grainlab_msgs::topics;
-use grainlab_node_kit::{Actor, Bus, Exit, Faults, Next, Node, NodeError};
+use grainlab_node_kit::{Actor, Bus, Exit, Faults, Next, Node, NodeError, Statistics};
 use std::time::Duration;
 
 fn state_in(message: &msg::Packing) -> Result<(Packing, Vec<u8>), BoundaryError> {

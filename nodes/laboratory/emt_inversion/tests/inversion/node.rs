@@ -3,7 +3,7 @@ use crate::speeds::upright;
 use grainlab_emt_inversion::{EmtInversion, Settings, microstructure_of_moduli, microstructure_of_speeds};
 use grainlab_msgs::msg::{Microstructure, Moduli, WaveSpeeds};
 use grainlab_msgs::topics;
-use grainlab_node_kit::{Bus, Demand, Hub, Level, Names, Node, Publisher, RosArgs, Subscription};
+use grainlab_node_kit::{Demand, Hub, Level, Names, Node, Publisher, RosArgs, Statistics, Subscription};
 
 #[test]
 fn a_latched_set_of_moduli_is_inverted_by_a_node_that_comes_late_and_a_refused_one_is_answered() {

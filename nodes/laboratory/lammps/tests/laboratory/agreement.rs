@@ -3,8 +3,9 @@
 use super::lammps;
 use grainlab_core::stress::stress;
 use grainlab_core::{Cell, Mat3, Packing, Vec3};
-use grainlab_dem::{Compute, EngineSettings, TimeStep};
-use grainlab_experiment::{Dem, EngineFactory, Simulation};
+use grainlab_dem::Dem;
+use grainlab_engine::{Compute, EngineFactory, EngineSettings, TimeStep};
+use grainlab_experiment::Simulation;
 use grainlab_scene::Scene;
 use std::sync::LazyLock;
 
@@ -81,7 +82,7 @@ fn in_a_fixed_cell_both_engines_have_the_same_stress_after_1000_steps() {
         let step = |factory: &dyn EngineFactory| {
             stepped(factory, &shaken(4e-8), &settings(friction, damping, 4e-8), [0.0; 6], &[1000])
         };
-        let ((_, ours), (packing, theirs)) = (step(&Dem), step(&lammps));
+        let ((_, ours), (packing, theirs)) = (step(&Dem::default()), step(&lammps));
         let off = difference(&ours, &theirs);
         eprintln!("friction {friction}, damping {damping}: {off:.1e}");
         assert!(off < bound, "{off:e}");
@@ -99,7 +100,7 @@ fn in_a_deforming_cell_the_difference_falls_in_proportion_to_the_time_step() {
             let rate = [-4.0, 2.0, -3.0, 1.0, -0.5, 2.0];
             stepped(factory, &shaken(dt), &settings(0.3, 0.0, dt), rate, &[count / 10; 10])
         };
-        let ((_, ours), (packing, theirs)) = (step(&Dem), step(&lammps));
+        let ((_, ours), (packing, theirs)) = (step(&Dem::default()), step(&lammps));
         // The stress that LAMMPS sums is that of the packing read from it.
         assert!(difference(&stress(&packing).tensor.matrix(), &theirs) < 1e-10);
         difference(&ours, &theirs)
@@ -118,7 +119,7 @@ fn contacts_at_the_coulomb_limit_are_as_many_as_of_our_engine() {
     let dt = 4e-8;
     let start = Packing { time_step: dt, ..PRESSED.clone() };
     for rate in [[-40.0, 20.0, 20.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 40.0, 0.0]] {
-        let sliding = [&Dem as &dyn EngineFactory, &lammps].map(|factory| {
+        let sliding = [&Dem::default() as &dyn EngineFactory, &lammps].map(|factory| {
             let (packing, _) = stepped(factory, &start, &settings(0.3, 0.3, dt), rate, &[50; 60]);
             packing.sliding_fraction()
         });
@@ -180,7 +181,7 @@ fn two_spheres_rebound_with_the_same_speed() {
             let of = |id: u32| packing.velocities[packing.ids.iter().position(|i| *i == id).unwrap()].x;
             of(8) - of(3)
         };
-        let (ours, theirs) = (rebound(&Dem), rebound(&lammps));
+        let (ours, theirs) = (rebound(&Dem::default()), rebound(&lammps));
         eprintln!("damping {damping}: restitution {:.6}, off {:.1e}", ours / 0.1, theirs / ours - 1.0);
         assert!(ours > 1e-3 && (theirs / ours - 1.0).abs() < 1e-5, "{damping}: {ours} {theirs}");
     }

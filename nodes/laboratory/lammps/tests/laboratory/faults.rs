@@ -3,8 +3,8 @@
 use super::agreement::PRESSED;
 use super::lammps;
 use grainlab_core::{Cell, Mat3, Packing, Vec3};
-use grainlab_dem::{Compute, EngineSettings};
-use grainlab_experiment::{Dem, EngineFactory, ExperimentError};
+use grainlab_dem::Dem;
+use grainlab_engine::{Compute, EngineError, EngineFactory, EngineSettings};
 use grainlab_lammps::Lammps;
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ fn settings() -> EngineSettings {
 }
 
 /// The error of a start and 10 steps with this command in place of `lmp`.
-fn error(command: &str, limit: Duration) -> ExperimentError {
+fn error(command: &str, limit: Duration) -> EngineError {
     let lammps = Lammps { command: command.to_owned(), time_limit: limit };
     let started = lammps.start(&PRESSED, &settings(), &[0.0; 6], &Compute::default());
     started.and_then(|mut engine| engine.run(10).map(drop)).unwrap_err()
@@ -25,7 +25,7 @@ fn a_program_that_is_missing_or_is_not_lammps_is_named_with_its_last_lines() {
     let missing = error("/no/lmp", limit);
     assert!(missing.to_string().contains("`/no/lmp`: it ended (exit status: 127): "), "{missing}");
     let ended = error("sh -c 'echo no licence >&2; exit 7'", limit);
-    assert!(matches!(ended, ExperimentError::EngineLost { .. }));
+    assert!(matches!(ended, EngineError::Lost { .. }));
     let text = ended.to_string();
     assert!(text.contains("it ended (exit status: 7): no licence"), "{text}");
 }
@@ -95,7 +95,7 @@ fn tangential_forces_of_another_engine_are_refused_and_those_of_lammps_are_conti
         / first.stress.tensor.matrix().norm();
     assert!(off < 1e-10, "{off:e}");
     // To ours by the forces of contacts; from ours not at all.
-    assert!(start(&Dem, &packing).is_ok());
+    assert!(start(&Dem::default(), &packing).is_ok());
     let refused = start(&lammps, &packing).unwrap_err().to_string();
     assert!(refused.contains("the packing has tangential forces, which LAMMPS cannot read"), "{refused}");
 }

@@ -1,7 +1,8 @@
 //! The built-in scenes under LAMMPS.
 
 use super::lammps;
-use grainlab_experiment::{EngineFactory, Simulation};
+use grainlab_engine::EngineFactory;
+use grainlab_experiment::Simulation;
 use grainlab_lammps::check_scene;
 use grainlab_scene::{BUILT_IN, Scene};
 use std::sync::Arc;

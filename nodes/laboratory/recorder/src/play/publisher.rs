@@ -3,7 +3,7 @@
 use super::watch::{Seen, Watch};
 use grainlab_console::{Failure, say};
 use grainlab_msgs::{Topic, topics};
-use grainlab_node_kit::{BulkPublisher, Bus, BusError, DdsBus, PublisherId, Wake};
+use grainlab_node_kit::{BulkPublisher, Bus, BusError, DdsBus, Graph, PublisherId, Wake};
 use grainlab_recordings::{ChannelInfo, QosOverrides, offered_profiles};
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;

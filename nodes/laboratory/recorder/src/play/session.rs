@@ -1,12 +1,13 @@
 //! Sends the messages of a playback, and follows its keys.
 
+use super::delivery;
 use super::keys::{Key, Keys};
 use super::publisher::TopicPublishers;
-use grainlab_console::{Failure, say};
+use grainlab_console::{Failure, count, say};
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::{rosgraph_msgs, to_cdr, topics};
 use grainlab_node_kit::{BulkPublisher, Bus, BusError, DdsBus, PublisherId, Wake};
-use grainlab_recordings::{Message, Play, Player};
+use grainlab_recordings::{Message, Play, PlayOptions, Player, Recording};
 use std::time::Duration;
 
 /// Pause before the next attempt to send a message while a reader is slow.
@@ -17,22 +18,22 @@ const LOOK: Duration = Duration::from_millis(50);
 const KEYS: Duration = Duration::from_millis(30);
 
 /// A playback on the bus.
-pub(super) struct Session<'a> {
-    pub(super) bus: &'a mut DdsBus,
-    pub(super) publishers: &'a mut TopicPublishers,
-    pub(super) keys: Option<Keys>,
-    pub(super) clock: Option<ClockPublisher>,
-    pub(super) sent: u64,
+pub(super) struct Session {
+    pub(super) bus: DdsBus,
+    pub(super) publishers: TopicPublishers,
+    keys: Option<Keys>,
+    clock: Option<ClockPublisher>,
+    sent: u64,
     /// Messages of a part of the recording whose definition is another one than that of their topic.
-    pub(super) unread: u64,
+    unread: u64,
     /// Total delay, because readers were slow.
-    pub(super) late: Duration,
+    late: Duration,
     /// Time of the next look at the acknowledgements.
-    pub(super) next_look: Duration,
+    next_look: Duration,
 }
 
 /// Publishes the time of the recording.
-pub(super) struct ClockPublisher {
+struct ClockPublisher {
     publisher: PublisherId,
     period: Duration,
     next: Duration,
@@ -40,7 +41,7 @@ pub(super) struct ClockPublisher {
 
 impl ClockPublisher {
     /// Advertises `/clock`, to be published `hz` times per second.
-    pub(super) fn advertise(bus: &mut DdsBus, hz: f64) -> Result<Self, Failure> {
+    fn advertise(bus: &mut DdsBus, hz: f64) -> Result<Self, Failure> {
         let publisher = bus.advertise(&topics::CLOCK).map_err(Failure::failed)?;
         Ok(Self { publisher, period: Duration::from_secs_f64(1.0 / hz), next: bus.now() })
     }
@@ -72,17 +73,64 @@ pub(super) enum Ended {
     Stuck,
 }
 
-impl Session<'_> {
-    /// Sends each message when it is due. Returns when every message sent in parts is complete at every active reader.
-    pub(super) fn play(&mut self, player: &mut Player<'_>) -> Result<Ended, Failure> {
-        let ended = self.run(player)?;
-        self.late += player.slipped();
-        Ok(ended)
+impl Session {
+    /// Creates a playback that also publishes `/clock`, `clock` times per second.
+    pub(super) fn new(
+        mut bus: DdsBus,
+        publishers: TopicPublishers,
+        keys: Option<Keys>,
+        clock: Option<f64>,
+    ) -> Result<Self, Failure> {
+        let clock = clock.map(|hz| ClockPublisher::advertise(&mut bus, hz)).transpose()?;
+        let (late, next_look) = (Duration::ZERO, Duration::ZERO);
+        Ok(Self { bus, publishers, keys, clock, sent: 0, unread: 0, late, next_look })
     }
 
-    /// True if no other round of a loop begins: after a signal, the key `q`, or a subscriber that stopped.
-    pub(super) fn is_over(&self, ended: Ended) -> bool {
-        ended != Ended::Done || self.keys.as_ref().is_some_and(Keys::is_over)
+    /// Sends each message when it is due, `again` and again until a key or a signal. The keys are closed afterwards.
+    ///
+    /// Returns when every message sent in parts is complete at every active reader.
+    pub(super) fn play(
+        &mut self,
+        recording: &Recording,
+        options: &PlayOptions,
+        mut is_paused: bool,
+        again: bool,
+    ) -> Result<Ended, Failure> {
+        loop {
+            let mut player = Player::new(recording, options)?;
+            if std::mem::take(&mut is_paused) {
+                player.pause(self.bus.now());
+            }
+            let ended = self.run(&mut player)?;
+            self.late += player.slipped();
+            if !again || ended != Ended::Done || self.keys.as_ref().is_some_and(Keys::is_over) {
+                self.keys = None;
+                return Ok(ended);
+            }
+        }
+    }
+
+    /// Says how late the messages were in total.
+    pub(super) fn say_delay(&self) {
+        if self.late > Duration::from_millis(100) {
+            let late = self.late.as_secs_f64();
+            say!("grainlab: the readers are slower than the recording: {late:.1} s late in total");
+        }
+    }
+
+    /// Says what was sent and what was not. Returns true if all of it was sent and received.
+    pub(super) fn report(&self, ended: Ended) -> bool {
+        let was_read = self.publishers.values().any(|publisher| publisher.watch().was_read());
+        let to = if was_read { "" } else { ", without a subscriber" };
+        say!("grainlab: {} sent{to}", count(self.sent, "message"));
+        if self.unread > 0 {
+            let unread = count(self.unread, "message");
+            say!("grainlab: {unread} left out: their definition differs from that of this program");
+        }
+        if ended == Ended::Stuck {
+            say!("grainlab: the playback ended before the end of the recording");
+        }
+        delivery::report(&self.publishers) && ended != Ended::Stuck && self.unread == 0
     }
 
     fn run(&mut self, player: &mut Player<'_>) -> Result<Ended, Failure> {
@@ -94,9 +142,9 @@ impl Session<'_> {
             let now = self.bus.now();
             let looks = now >= self.next_look;
             for publisher in self.publishers.values_mut() {
-                idle &= publisher.advance(self.bus)?;
+                idle &= publisher.advance(&mut self.bus)?;
                 if looks {
-                    publisher.look(self.bus);
+                    publisher.look(&self.bus);
                 }
             }
             if looks {
@@ -118,7 +166,7 @@ impl Session<'_> {
                 }
             };
             if let Some(clock) = &mut self.clock {
-                wait = wait.min(clock.publish(self.bus, player.position(now))?);
+                wait = wait.min(clock.publish(&mut self.bus, player.position(now))?);
             }
             if self.keys.is_some() {
                 wait = wait.min(KEYS);
@@ -137,10 +185,10 @@ impl Session<'_> {
             return Ok(None);
         };
         loop {
-            match publisher.publish(self.bus, &body) {
+            match publisher.publish(&mut self.bus, &body) {
                 Ok(()) => break,
                 Err(BusError::Full { .. }) => {
-                    publisher.look(self.bus);
+                    publisher.look(&self.bus);
                     if publisher.watch().is_stuck(self.bus.now()) {
                         return Ok(Some(Ended::Stuck));
                     }

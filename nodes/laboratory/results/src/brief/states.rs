@@ -5,14 +5,15 @@ use crate::inference::{Inference, Origin, by_origin};
 use crate::packing_text::{eps, moduli, stress_ratio};
 use crate::read_back::InvertedPacking;
 use grainlab_console::{Table, count, fixed, three_digits};
+use grainlab_core::notes::Status;
 use grainlab_core::results::InferredQuantity;
 use std::collections::BTreeSet;
 
 /// Rows of the table; with more estimates, those of the last states have rows.
 const MOST_ROWS: usize = 10;
 
-/// The mark after the model of an estimate outside its range, and the status that it means.
-const OUTSIDE: (&str, &str) = ("*", "extrapolated");
+/// The mark after the model of an estimate outside its range.
+const OUTSIDE: &str = "*";
 
 /// The table, and below it what is left out of it.
 pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
@@ -63,8 +64,8 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
         let named = |o: &Origin| if nodes.len() > 1 { o.data_and_node() } else { o.data() };
         let shown = &found[..found.len().min(MOST_ROWS)];
         for (_, best) in shown {
-            if best.is_some_and(|b| b.status == OUTSIDE.1) {
-                note(format!("{} {}", OUTSIDE.0, OUTSIDE.1));
+            if best.is_some_and(|b| b.status == Status::Extrapolated) {
+                note(format!("{OUTSIDE} {}", Status::Extrapolated));
             }
         }
         let first = shown.first();
@@ -96,8 +97,8 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
 fn estimated(best: Option<&Inference>, unknown: &str) -> [String; 4] {
     let Some(b) = best else { return ["", "", "", unknown].map(str::to_owned) };
     let by = match b.status {
-        "ok" => b.model.clone(),
-        status if status == OUTSIDE.1 => b.model.clone() + OUTSIDE.0,
+        Status::Ok => b.model.clone(),
+        Status::Extrapolated => b.model.clone() + OUTSIDE,
         status => format!("{}, {status}", b.model),
     };
     let [k, z, eps] = [InferredQuantity::K, InferredQuantity::Z, InferredQuantity::Eps]

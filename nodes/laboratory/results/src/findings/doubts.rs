@@ -5,6 +5,7 @@ use crate::acoustic::AcousticReport;
 use crate::inference::Inference;
 use crate::read_back::InvertedPacking;
 use grainlab_console::{and, count};
+use grainlab_core::notes::{Note, Status};
 use grainlab_core::results::InferredQuantity;
 use std::collections::BTreeSet;
 
@@ -64,127 +65,90 @@ fn at_most(inside: usize, all: usize) -> f64 {
     1.0 - fewer_misses
 }
 
-/// Reasons to doubt, each with the numbers of the states that have it, in the order of the first ones. Texts that differ by
-/// numbers alone are one reason.
+/// Reasons to doubt, in the order in which the states first have them. Notes that differ by numbers alone are one reason.
 #[derive(Default)]
-pub(super) struct Doubts(Vec<(Vec<Word>, BTreeSet<usize>)>);
+pub(super) struct Doubts(Vec<Doubt>);
 
-/// A word of a reason, or the least and greatest of its numbers with the marks around them.
-#[derive(PartialEq)]
-enum Word {
-    Text(String),
-    Numbers([String; 2], [f64; 2], [String; 2]),
-}
-
-impl Word {
-    fn of(word: &str) -> Self {
-        let number = word.trim_matches(['(', ')', ',', ';', ':', '[', ']', '.']);
-        let marks = word.split_once(number).filter(|_| {
-            number.starts_with(['-', '+', '.']) || number.starts_with(|c: char| c.is_ascii_digit())
-        });
-        match (number.parse::<f64>(), marks) {
-            (Ok(value), Some((before, after))) => Self::Numbers(
-                [number.to_owned(), number.to_owned()],
-                [value; 2],
-                [before.to_owned(), after.to_owned()],
-            ),
-            _ => Self::Text(word.to_owned()),
-        }
-    }
-
-    fn is_like(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Numbers(_, _, marks), Self::Numbers(_, _, others)) => marks == others,
-            _ => self == other,
-        }
-    }
-
-    fn take(&mut self, other: Self) {
-        if let (Self::Numbers([low, high], [least, greatest], _), Self::Numbers([text, _], [value, _], _)) =
-            (self, other)
-        {
-            if value < *least {
-                (*low, *least) = (text, value);
-            } else if value > *greatest {
-                (*high, *greatest) = (text, value);
-            }
-        }
-    }
-
-    fn text(&self) -> String {
-        match self {
-            Self::Text(text) => text.clone(),
-            Self::Numbers([low, high], _, [before, after]) if low == high => format!("{before}{low}{after}"),
-            Self::Numbers([low, high], _, [before, after]) => format!("{before}{low} to {high}{after}"),
-        }
-    }
+struct Doubt {
+    /// Words before and after the sentence of the notes.
+    frame: [String; 2],
+    notes: Vec<Note>,
+    /// Numbers of the states that have the reason.
+    states: BTreeSet<usize>,
 }
 
 impl Doubts {
-    fn add(&mut self, n: usize, text: &str) {
-        if !self.count(n, text) {
-            self.0.push((text.split(' ').map(Word::of).collect(), BTreeSet::from([n])));
+    fn add(&mut self, state: usize, lead: &str, note: Note) {
+        self.add_framed(state, [lead.to_owned(), String::new()], note);
+    }
+
+    fn add_framed(&mut self, state: usize, frame: [String; 2], note: Note) {
+        if !self.count(state, &frame, &note) {
+            self.0.push(Doubt { frame, notes: vec![note], states: BTreeSet::from([state]) });
         }
     }
 
-    /// Counts a state for a reason, and is true, if another state has the reason.
-    fn count(&mut self, n: usize, text: &str) -> bool {
-        let words: Vec<Word> = text.split(' ').map(Word::of).collect();
-        let is_known = |(known, _): &&mut (Vec<Word>, BTreeSet<usize>)| {
-            known.len() == words.len() && known.iter().zip(&words).all(|(a, b)| a.is_like(b))
-        };
-        let Some((known, of)) = self.0.iter_mut().find(is_known) else { return false };
-        known.iter_mut().zip(words).for_each(|(known, word)| known.take(word));
-        of.insert(n);
+    /// Counts a state for a reason, and returns true, if another state has the reason.
+    fn count(&mut self, state: usize, frame: &[String; 2], note: &Note) -> bool {
+        let known = |doubt: &&mut Doubt| doubt.frame == *frame && doubt.notes[0].is_like(note);
+        let Some(doubt) = self.0.iter_mut().find(known) else { return false };
+        doubt.notes.push(note.clone());
+        doubt.states.insert(state);
         true
     }
 
     /// Counts a state for each further reason of its estimate that is the first reason of another state.
-    pub(super) fn further(&mut self, n: usize, state: &InvertedPacking) {
-        for best in recommended(state).iter().filter(|best| best.status != "ok") {
-            let reasons = best.warnings.iter().skip(1).map(|why| doubted(best, why));
-            reasons.for_each(|reason| _ = self.count(n, &reason));
+    pub(super) fn count_further(&mut self, n: usize, state: &InvertedPacking) {
+        for best in recommended(state).iter().filter(|best| best.status != Status::Ok) {
+            let further = best.notes.iter().skip(1);
+            further.for_each(|note| _ = self.count(n, &[doubted(best), String::new()], note));
         }
     }
 
     /// Takes the doubts about a state: of its inversion first, then of the packing and its wave speeds.
-    pub(super) fn of(&mut self, n: usize, state: &InvertedPacking) {
+    pub(super) fn take(&mut self, n: usize, state: &InvertedPacking) {
+        let nothing = "nothing was inferred: ";
         match (recommended(state), state.packing.report.elasticity.as_ref()) {
-            (Some(best), _) if best.status != "ok" => {
-                let alone = || format!("the estimate is {}", best.status);
-                self.add(n, &best.warnings.first().map_or_else(alone, |why| doubted(best, why)));
+            (Some(best), _) if best.status != Status::Ok => {
+                let first = best.notes.first().cloned();
+                self.add(n, &doubted(best), first.unwrap_or_else(|| Note::remark("no reason was sent")));
             }
             (Some(_), _) => {}
-            (None, Err(why)) => self.add(n, &format!("nothing was inferred: there is no stiffness: {why}")),
+            (None, Err(why)) => self.add(n, &format!("{nothing}there is no stiffness: "), why.into()),
             (None, Ok(_)) => {
                 let results: Vec<&Inference> = state.results.iter().collect();
-                let why = Inference::why_unknown(&results);
-                let why = why.unwrap_or_else(|| "no moduli were inverted".to_owned());
-                self.add(n, &format!("nothing was inferred: {why}"));
+                let preferred = Inference::preferred(&results);
+                let reason = preferred.and_then(|best| Some((best.model.as_str(), best.notes.first()?)));
+                match reason {
+                    Some((model, why)) => self.add(n, &format!("{nothing}model {model}: "), why.clone()),
+                    None => self.add(n, nothing, Note::remark("no moduli were inverted")),
+                }
             }
         }
-        state.packing.warnings.iter().for_each(|w| self.add(n, w));
-        state.acoustics().filter_map(AcousticReport::doubt).for_each(|w| self.add(n, &w));
+        state.packing.notes.iter().for_each(|note| self.add(n, "", note.clone()));
+        for (note, more) in state.acoustics().filter_map(AcousticReport::doubt) {
+            self.add_framed(n, ["wave speeds: ".to_owned(), more], note);
+        }
     }
 
     pub(super) fn finish(self, all: usize, noun: &str) -> Vec<String> {
         let shown = if self.0.len() > MOST_DOUBTS { MOST_DOUBTS - 1 } else { self.0.len() };
         let more = self.0.len() - shown;
-        let of = |(words, of): &(Vec<Word>, BTreeSet<usize>)| {
-            let text = words.iter().map(Word::text).collect::<Vec<_>>().join(" ");
-            match (all, of.len()) {
+        let line = |Doubt { frame: [before, after], notes, states }: &Doubt| {
+            let text = format!("{before}{}{after}", Note::text_of(notes));
+            match (all, states.len()) {
                 (1, _) => sentence(&text),
                 (all, some) if all == some => format!("In every {noun}: {text}."),
                 (all, some) => format!("In {some} of {}: {text}.", count(all, noun)),
             }
         };
-        let lines = self.0[..shown].iter().map(of);
+        let lines = self.0[..shown].iter().map(line);
         lines.chain((more > 0).then(|| format!("And {}.", count(more, "further warning")))).collect()
     }
 }
 
-fn doubted(estimate: &Inference, why: &str) -> String {
-    format!("the estimate is {}: {why}", estimate.status)
+fn doubted(estimate: &Inference) -> String {
+    format!("the estimate is {}: ", estimate.status)
 }
 
 /// A text with a capital letter and a full stop.

@@ -27,7 +27,7 @@ impl Judged {
     pub fn of(result: &Inference, truth: &PackingReport) -> Vec<Self> {
         let judged = |quantity| {
             let (inferred, counted) = (result.values[quantity]?, truth.counted(quantity)?);
-            let sigma = result.sigma[quantity].filter(|s| *s > 0.0);
+            let sigma = result.sigma(quantity).filter(|s| *s > 0.0);
             let by_sigma = sigma.map(|s| [inferred - NORMAL_95 * s, inferred + NORMAL_95 * s]);
             let interval = result.interval.bounds[quantity].or(by_sigma);
             Some(Self { quantity, inferred, counted, sigma, interval })

@@ -2,9 +2,9 @@
 
 use crate::inference::{Inference, Origin};
 use crate::measurements::{Identity, Measurement, Measurements};
-use grainlab_core::Packing;
+use grainlab_core::notes::Note;
 use grainlab_core::results::{PackingReport, geometry_warnings};
-use grainlab_experiment::{EngineProgram, PathPosition, engine_program};
+use grainlab_core::{Packing, PathPosition};
 use grainlab_msgs::boundary::{BoundaryError, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::{Topic, msg, topics};
@@ -38,12 +38,10 @@ pub(super) struct About {
     pub(super) step: u64,
     /// Position on the loading path. A packing within a phase need not be at rest, and may have no results.
     pub(super) position: Option<PathPosition>,
-    /// The engine that made it, if it is not ours.
-    pub(super) engine: Option<EngineProgram>,
     /// Number of its grains and of its contacts.
     pub(super) packing: Option<(usize, usize)>,
     /// Warnings about its geometry, which the report does not have; of packings at the ends of phases alone.
-    geometry: Vec<String>,
+    geometry: Vec<Note>,
     stamp: Option<Time>,
     pub(super) report: Option<PackingReport>,
     report_stamp: Option<Time>,
@@ -64,7 +62,7 @@ pub(super) type Speeds = (Option<Measurement>, WaveSpeedsReading);
 
 impl About {
     pub(super) fn is_within_phase(&self) -> bool {
-        self.position.is_some_and(|p| !p.end_of_phase)
+        self.position.as_ref().is_some_and(|path| !path.end_of_phase)
     }
 
     /// True if data of the identity are about this packing. Those of an instrument without a simulation have step 0, too, and
@@ -74,11 +72,10 @@ impl About {
     }
 
     /// Notes on the geometry of the packing, and on several results of one kind.
-    pub(super) fn notes(&self) -> Vec<String> {
-        let of_reports = (self.reports_differ && self.disputed_by.is_none()).then(|| {
-            "different reports of this packing were sent: that of the last is the one counted".to_owned()
-        });
-        let confused = self.data.iter().filter_map(|(topic, data)| data.confusion(topic));
+    pub(super) fn notes(&self) -> Vec<Note> {
+        let several = "different reports of this packing were sent: that of the last is the one counted";
+        let of_reports = (self.reports_differ && self.disputed_by.is_none()).then(|| Note::remark(several));
+        let confused = self.data.iter().filter_map(|(topic, data)| data.confusion(topic).map(Note::remark));
         self.geometry.iter().cloned().chain(of_reports).chain(confused).collect()
     }
 
@@ -171,8 +168,7 @@ pub(super) fn enter(
             let packing = Packing::try_from(&message).map_err(refused(message.step))?;
             run.packing(&recorded.channel.topic, &packing).map_err(Unused::OfAnotherRun)?;
             let about = about(all, packing.step);
-            about.position = PathPosition::of(&message.run_state);
-            about.engine = engine_program(&message.run_state);
+            about.position.clone_from(&packing.path);
             about.stamp = Some(message.header.stamp);
             about.packing = Some((packing.grains(), packing.contacts.len()));
             if !about.is_within_phase() {
@@ -231,7 +227,7 @@ pub(super) fn enter(
             let nth = data
                 .map_or(0, |data| about.data.entry(data).or_default().answered(identity.clone(), by.clone()));
             let origin = Origin { source: Some(message.source.clone()), by, measurement: None };
-            let of = |result| Inference { origin: origin.clone(), result };
+            let of = |estimate| Inference { origin: origin.clone(), estimate };
             let estimates = results.into_iter().map(of).collect();
             about.answers.push(Answer { source: message.source, identity, nth, estimates });
             Ok(step)

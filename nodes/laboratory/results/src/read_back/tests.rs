@@ -4,6 +4,7 @@ use super::*;
 use crate::measured_packing::tests::{lattice, measured};
 use grainlab_core::Packing;
 use grainlab_core::contact::RollingResistance;
+use grainlab_core::notes::{Code, texts};
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt_inversion::{
     Answer, Settings, microstructure_of_moduli, microstructure_of_report, microstructure_of_speeds,
@@ -144,7 +145,7 @@ fn doubts_about_the_geometry_of_a_recorded_packing_are_read_back_with_it() {
     let back = made.read();
     let found = &back.states[0].packing;
     assert!(found.report.elasticity.as_ref().is_err_and(|none| none.is_fault()), "{:?}", back.complaints);
-    let warnings = found.warnings.join("; ");
+    let warnings = texts(&found.notes).join("; ");
     assert!(warnings.contains("3 of 3 contacts overlap by more than 10 %"), "{warnings}");
 }
 
@@ -216,9 +217,9 @@ fn shots_that_nothing_tells_apart_are_not_paired_with_estimates() {
         assert!(state.acoustic_of(origin.measurement.as_ref()).is_none(), "{origin:?}");
     }
     assert!(
-        state.packing.warnings.iter().any(|w| w.contains("is not known")),
+        texts(&state.packing.notes).iter().any(|w| w.contains("is not known")),
         "{:?}",
-        state.packing.warnings
+        state.packing.notes
     );
 }
 
@@ -289,9 +290,9 @@ fn a_report_is_read_back_as_it_was_recorded() {
     made.state(&Packing { contacts: Vec::new(), ..later(9, 1e-6) });
     let states = made.read().states;
     assert_eq!(states[0].packing.report, measured(&packing).report);
-    assert!(states[0].packing.warnings.iter().any(|w| w.contains("rolling springs")));
+    assert!(states[0].packing.notes.iter().any(|note| note.is(Code::WithoutRolling)));
     // The reason is that of the analyzer.
-    assert!(states[1].packing.warnings[0].starts_with("no contact network: none of the 1 grains"));
+    assert!(states[1].packing.notes[0] == Note::no_contacts(1.0));
     assert!(states[1].results.is_empty());
     let summary = crate::Summary { states, ..crate::Summary::of_nothing(Exit::Done) };
     let table = crate::brief::text(&summary, Path::new("r"), &["recording"], "grainlab");

@@ -6,7 +6,7 @@ use crate::names::{absolute, unknown};
 use crate::observer::Observer;
 use grainlab_console::Failure;
 use grainlab_msgs::{Topic, topics};
-use grainlab_node_kit::{Bus, DdsBus, Demand, Exit, Sample, Source, Wake, tool_bus};
+use grainlab_node_kit::{Bus, DdsBus, Demand, Exit, Graph as _, Sample, Source, Wake, tool_bus};
 use std::time::{Duration, Instant};
 
 /// Samples that may wait for this process: a second of the fastest topic.

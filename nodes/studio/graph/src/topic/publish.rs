@@ -5,7 +5,7 @@ use crate::names::absolute;
 use crate::view::schema;
 use grainlab_console::{Failure, count, print_more};
 use grainlab_msgs::Topic;
-use grainlab_node_kit::{Bus, BusError, DdsBus, Delivery, Exit, Wake, tool_bus};
+use grainlab_node_kit::{Bus, BusError, DdsBus, Delivery, Exit, Graph, Wake, tool_bus};
 use grainlab_recordings::MessagePath;
 use std::time::{Duration, Instant};
 

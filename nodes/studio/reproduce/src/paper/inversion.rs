@@ -4,7 +4,7 @@ use super::sample::{Observed, States};
 use super::tables::PAPER;
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{
-    Calibration, Estimate, Model, Modulus, Observation, StrainRatio, StrainRatioSource, models,
+    Calibration, Inversion, Model, Modulus, Observation, StrainRatio, StrainRatioSource, models,
 };
 use grainlab_page::Mean;
 
@@ -40,7 +40,7 @@ impl Case {
     }
 
     /// The estimate from the moduli of a packing, as `grainlab invert` makes it with this error; `None` where it has no answer.
-    fn infer(&self, observed: &Observed) -> Option<Estimate> {
+    fn infer(&self, observed: &Observed) -> Option<Inversion> {
         let r = &observed.report;
         let mut observation = Observation::of(r)?;
         let gamma = self.gamma.map(|source| StrainRatio::of(&r.strain_ratios, source));
@@ -130,7 +130,7 @@ pub fn judge(states: &States) -> Vec<Judged> {
 
 fn judge_one(case: Case, states: &States) -> Judged {
     let found: Vec<_> = states.all().iter().map(|o| (o, case.infer(o))).collect();
-    let value = |found: &Option<Estimate>, q: InferredQuantity| found.as_ref()?.structure.get(q);
+    let value = |found: &Option<Inversion>, q: InferredQuantity| found.as_ref()?.structure.get(q);
     let errors = |q: InferredQuantity, truth: fn(&Observed) -> f64| {
         let errors: Vec<f64> = found.iter().filter_map(|(o, f)| Some(value(f, q)? - truth(o))).collect();
         Errors::of(&errors)

@@ -1,14 +1,15 @@
 //! Statistics of the errors of one quantity.
 
+use grainlab_core::notes::Status;
 use grainlab_core::results::InferredQuantity;
-use grainlab_emt::{Estimate, Status};
+use grainlab_emt::Inversion;
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
 /// One estimate against the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Error {
-    /// Estimate minus truth; `None` without an estimate.
+    /// Inversion minus truth; `None` without an estimate.
     error: Option<f64>,
     extrapolated: bool,
     /// Coverage of the truth by the interval; `None` without an interval.
@@ -16,11 +17,11 @@ pub(super) struct Error {
 }
 
 impl Error {
-    pub(super) fn of(estimate: Option<&Estimate>, quantity: InferredQuantity, truth: f64) -> Self {
+    pub(super) fn of(estimate: Option<&Inversion>, quantity: InferredQuantity, truth: f64) -> Self {
         let found = estimate.and_then(|e| Some((e, e.structure.get(quantity)?)));
         Self {
             error: found.map(|(_, value)| value - truth),
-            extrapolated: found.is_some_and(|(e, _)| e.status == Status::Extrapolated),
+            extrapolated: found.is_some_and(|(e, _)| e.status() == Status::Extrapolated),
             covered: found
                 .and_then(|(e, _)| e.interval(quantity))
                 .map(|[low, high]| (low..=high).contains(&truth)),

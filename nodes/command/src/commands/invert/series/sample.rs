@@ -1,7 +1,8 @@
 //! One sample, and what is inferred of it.
 
 use super::super::speed_table::SpeedLine;
-use grainlab_emt::{Sensitivity, SeriesEstimate, SpeedSeries, Status};
+use grainlab_core::notes::Status;
+use grainlab_emt::{Sensitivity, SeriesEstimate, SpeedSeries};
 use serde::{Serialize, Serializer};
 
 /// One sample with its answer.

@@ -7,7 +7,7 @@
 
 use super::pair::{Grain, OVERLAP_TOLERANCE, PairMotion, collide, dot};
 use super::queue::Queue;
-use crate::error::DemError;
+use crate::gas::error::GasError;
 use crate::gas::grid::{Grid, Image, NO_GRAIN, Neighbour, cell_vectors};
 use grainlab_core::Vec3;
 
@@ -96,7 +96,7 @@ impl Interval {
         (growth, end): (f64, f64),
         margin: f64,
         stopped: &dyn Fn() -> bool,
-    ) -> Result<Self, DemError> {
+    ) -> Result<Self, GasError> {
         let n = radii.len();
         let largest = radii.iter().copied().fold(0.0, f64::max) * (1.0 + growth * end).max(1.0);
         let mut grid = Grid::new(edges, 2.0 * (largest + margin) * (1.0 + OVERLAP_TOLERANCE), n);
@@ -141,7 +141,7 @@ impl Interval {
             grains,
         };
         let go_on = |i: usize| {
-            if (i as u64).is_multiple_of(LOOK) && stopped() { Err(DemError::Stopped) } else { Ok(()) }
+            if (i as u64).is_multiple_of(LOOK) && stopped() { Err(GasError::Stopped) } else { Ok(()) }
         };
         for i in 0..n {
             go_on(i)?;
@@ -373,7 +373,7 @@ impl Interval {
         }
     }
 
-    fn check_overlaps(&self, i: usize) -> Result<(), DemError> {
+    fn check_overlaps(&self, i: usize) -> Result<(), GasError> {
         for neighbour in &self.neighbours[i] {
             let j = neighbour.grain as usize;
             let (a, b) = (&self.anchors[i], &self.anchors[j]);
@@ -382,7 +382,7 @@ impl Interval {
             let overlap = self.contact(i, j, 0.0).0 - distance;
             if overlap > OVERLAP_TOLERANCE * distance {
                 let [first, second] = [i, j].map(|g| self.origin[g].0);
-                return Err(DemError::HardSpheres(format!(
+                return Err(GasError::HardSpheres(format!(
                     "grains {first} and {second} overlap by {overlap:e} m; hard spheres must not"
                 )));
             }

@@ -6,7 +6,7 @@
 //! bit for bit.
 
 use super::interval::{Cut, Interval};
-use crate::error::DemError;
+use crate::gas::error::GasError;
 use grainlab_core::{Cell, Mat3, Vec3};
 
 /// Limit of the events per grain, over the number of collisions expected from [`mean_free_time`] (plus ten, for short
@@ -40,8 +40,8 @@ impl HardSpheres {
         radii: Vec<f64>,
         positions: Vec<Vec3>,
         velocities: Vec<Vec3>,
-    ) -> Result<Self, DemError> {
-        let error = |what: String| Err(DemError::HardSpheres(what));
+    ) -> Result<Self, GasError> {
+        let error = |what: String| Err(GasError::HardSpheres(what));
         let edges = cell.matrix();
         if edges != &Mat3::from_diagonal(&edges.diagonal()) {
             return error("the edges of the cell must lie along the axes".into());
@@ -104,38 +104,38 @@ impl HardSpheres {
     /// relative velocity, affine part included, so compression heats the gas.
     ///
     /// # Errors
-    /// [`DemError::HardSpheres`] where grains overlap by more than rounding at the start or `interval` is not positive;
-    /// [`DemError::Jammed`] where there are too many collisions, or the cell becomes narrower than a grain. The state is then
+    /// [`GasError::HardSpheres`] where grains overlap by more than rounding at the start or `interval` is not positive;
+    /// [`GasError::Jammed`] where there are too many collisions, or the cell becomes narrower than a grain. The state is then
     /// unchanged.
-    pub fn advance(&mut self, rate: f64, interval: f64) -> Result<(Mat3, Collisions), DemError> {
+    pub fn advance(&mut self, rate: f64, interval: f64) -> Result<(Mat3, Collisions), GasError> {
         self.advance_unless(rate, interval, &|| false)
     }
 
     /// Advances, unless `stopped` becomes true on the way.
     ///
     /// # Errors
-    /// Those of [`HardSpheres::advance`], and [`DemError::Stopped`]; the state is then unchanged, too.
+    /// Those of [`HardSpheres::advance`], and [`GasError::Stopped`]; the state is then unchanged, too.
     pub fn advance_unless(
         &mut self,
         rate: f64,
         interval: f64,
         stopped: &dyn Fn() -> bool,
-    ) -> Result<(Mat3, Collisions), DemError> {
+    ) -> Result<(Mat3, Collisions), GasError> {
         let stretch = (rate * interval).exp();
         if !(interval > 0.0 && stretch > 0.0 && (1.0 / stretch).is_finite()) {
             let what = format!("an interval of {interval} s at a strain rate of {rate} 1/s leads nowhere");
-            return Err(DemError::HardSpheres(what));
+            return Err(GasError::HardSpheres(what));
         }
         // θ at the end; its limit for rate → 0 is the interval.
         let end = if rate == 0.0 { interval } else { (-rate * interval).exp_m1() / -rate };
         let deformation = Mat3::identity() * stretch;
         let cell = self.cell.deformed(&deformation);
-        let cell = cell.ok_or_else(|| DemError::HardSpheres("the cell loses its volume".into()))?;
+        let cell = cell.ok_or_else(|| GasError::HardSpheres("the cell loses its volume".into()))?;
         let edges = self.cell.matrix().diagonal();
         let widest = 2.0 * self.radii.iter().copied().fold(0.0, f64::max) * (1.0 - rate * end).max(1.0);
         if edges.min() <= widest {
             let cause = "the cell has become narrower than a grain: more grains fit better".to_string();
-            return Err(DemError::Jammed { solid_fraction: self.solid_fraction(), cause });
+            return Err(GasError::Jammed { solid_fraction: self.solid_fraction(), cause });
         }
         let mean = self.radii.iter().sum::<f64>() / self.radii.len().max(1) as f64;
         let expected = interval / mean_free_time(self.solid_fraction(), 2.0 * mean, self.speed());
@@ -145,11 +145,11 @@ impl HardSpheres {
         let Self { radii, positions, velocities, .. } = &*self;
         let mut events = Interval::new(edges, radii, positions, velocities, (-rate, end), margin, stopped)?;
         let counts = events.run(limit as u64, stopped).map_err(|e| match e {
-            Cut::Stopped => DemError::Stopped,
+            Cut::Stopped => GasError::Stopped,
             Cut::Limit { reached } => {
                 let solid_fraction = self.solid_fraction() * (1.0 - rate * reached).powi(3);
                 let cause = format!("{limit:.0} events in one interval: its pressure has diverged");
-                DemError::Jammed { solid_fraction, cause }
+                GasError::Jammed { solid_fraction, cause }
             }
         })?;
         let energy = events.twice_energy();

@@ -4,6 +4,7 @@ use super::fit::{Data, Fit};
 use super::state::State;
 use crate::calibration::RelaxationCalibration;
 use crate::error::EmtError;
+use grainlab_core::notes::Note;
 
 /// Number of coordination numbers tried: their spacing, 0.1, is a few times the error of an exact measurement.
 const GRID: usize = 24;
@@ -51,11 +52,11 @@ pub(super) fn best(
     if let [first, second, ..] = found.as_slice()
         && second.objective - first.objective < AMBIGUOUS
     {
-        return Err(EmtError::Ambiguous { first: first.z, second: second.z });
+        return Err(Note::ambiguous(first.z, second.z).into());
     }
     found.into_iter().next().ok_or_else(|| {
         let nearest = (0..GRID).min_by(|a, b| objective[*a].total_cmp(&objective[*b])).unwrap_or(0);
-        EmtError::NoCoordination { nearest: z_of(nearest), low, high, calibration: calibration.to_owned() }
+        Note::no_coordination(calibration.to_owned(), z_of(nearest), low, high).into()
     })
 }
 

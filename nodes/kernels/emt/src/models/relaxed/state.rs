@@ -9,6 +9,7 @@ use crate::invariants::Invariants;
 use crate::moduli::MODULI;
 use crate::probe::Probe;
 use grainlab_core::Material;
+use grainlab_core::notes::Note;
 use nalgebra::{SVector, Vector2};
 
 /// Step of the derivatives by the inputs of the state, as in [`crate::propagation`].
@@ -157,5 +158,5 @@ impl State {
 /// The error of a quantity that is too far from the packings of the calibration.
 pub(in crate::models) fn too_far(outside: &Outside, calibration: &str) -> EmtError {
     let Outside { quantity, value, range: [low, high], .. } = *outside;
-    EmtError::TooFar { quantity, value, low, high, calibration: calibration.to_owned() }
+    Note::too_far(quantity, calibration.to_owned(), value, low, high).into()
 }

@@ -2,16 +2,16 @@
 
 use super::{DdsBus, wire_name};
 use crate::announced::Announced;
-use crate::bus::SubscriptionId;
 use crate::bus_error::BusError;
-use crate::dds::graph::Graph;
+use crate::dds::graph::Endpoints;
+use crate::handles::SubscriptionId;
 use crate::lock::lock;
 use crate::sample::Sample;
 use grainlab_msgs::{Guid, Topic, TypeInfo};
 
 impl DdsBus {
     /// True if a remote writer counts for a reader of this type: it is admitted, and its messages are read.
-    pub(super) fn counts(&self, graph: &Graph, writer: &Guid, info: &TypeInfo) -> bool {
+    pub(super) fn counts(&self, graph: &Endpoints, writer: &Guid, info: &TypeInfo) -> bool {
         self.gate.admits(writer) && graph.misfit(writer, info).is_none()
     }
 
@@ -50,7 +50,7 @@ impl DdsBus {
     }
 
     /// Writers of other processes on a topic, sorted, of those that count.
-    pub(super) fn writers_of(&self, topic: &Topic, counts: impl Fn(&Graph, &Guid) -> bool) -> Vec<Guid> {
+    pub(super) fn writers_of(&self, topic: &Topic, counts: impl Fn(&Endpoints, &Guid) -> bool) -> Vec<Guid> {
         let Ok(name) = self.names.resolve(topic.name) else { return Vec::new() };
         let graph = &lock(&self.follower).graph;
         graph.writers_of(&wire_name(&name), |guid| counts(graph, guid))

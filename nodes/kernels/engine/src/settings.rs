@@ -1,9 +1,9 @@
 //! Settings of the engine during a phase.
 
-use crate::error::DemError;
+use crate::error::EngineError;
 use grainlab_core::contact::{SpringDashpotSlider, TangentialLaw};
 
-/// The parts of the contact law that a phase needs. The force kernel is compiled for each.
+/// The parts of the contact law that a phase needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Features {
     /// No friction: no spins, no tangential springs.
@@ -19,7 +19,7 @@ pub enum Features {
 pub enum TimeStep {
     /// This fraction of the stability bound, followed as contacts stiffen.
     FractionOfStable(f64),
-    /// Exactly this, s. Too long a step ends in [`DemError::Unstable`](crate::DemError::Unstable).
+    /// Exactly this, s. Too long a step ends in [`EngineError::Unstable`].
     Fixed(f64),
 }
 
@@ -53,11 +53,14 @@ impl Default for TimeStep {
 }
 
 impl EngineSettings {
-    /// The settings, or the one out of range.
-    pub(crate) fn check(&self) -> Result<(), DemError> {
+    /// Checks that every setting is in its range.
+    ///
+    /// # Errors
+    /// The first setting that is not, by name.
+    pub fn check(&self) -> Result<(), EngineError> {
         let not_negative = |name, value: f64| {
             let sound = value >= 0.0 && value.is_finite();
-            if sound { Ok(()) } else { Err(DemError::Setting { name, value, requirement: "0 or more" }) }
+            if sound { Ok(()) } else { Err(EngineError::Setting { name, value, requirement: "0 or more" }) }
         };
         // Infinite friction is one without sliding.
         not_negative("friction", if self.friction == f64::INFINITY { 0.0 } else { self.friction })?;
@@ -70,16 +73,16 @@ impl EngineSettings {
         if step > 0.0 && step.is_finite() {
             return Ok(());
         }
-        Err(DemError::Setting { name: "time_step", value: step, requirement: "more than 0" })
+        Err(EngineError::Setting { name: "time_step", value: step, requirement: "more than 0" })
     }
 
-    /// The contact law with these springs.
-    pub(crate) fn law<S>(&self, springs: S) -> SpringDashpotSlider<S> {
+    /// Returns the contact law with these springs.
+    pub fn law<S>(&self, springs: S) -> SpringDashpotSlider<S> {
         let &Self { friction, damping, tangential, .. } = self;
         SpringDashpotSlider { springs, friction, damping, kept: tangential.kept() }
     }
 
-    /// The parts of the contact law that these settings need.
+    /// Returns the parts of the contact law that these settings need.
     pub fn features(&self) -> Features {
         if self.friction == 0.0 {
             Features::Frictionless

@@ -1,30 +1,12 @@
 //! The engine of a run, as a trait: what a run asks of the program that moves the grains.
 
-use crate::error::ExperimentError;
+use crate::compute::Compute;
+use crate::energy::EnergyBalance;
+use crate::error::EngineError;
+use crate::settings::EngineSettings;
 use grainlab_core::stress::Stress;
-use grainlab_core::{Cell, Mat3, Packing};
-use grainlab_dem::{Compute, EnergyBalance, EngineSettings};
-use grainlab_scene::Scene;
-use serde::{Deserialize, Serialize};
-use std::fmt::{self, Debug};
-
-/// The program of an engine that is not ours, as recorded with each packing.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct EngineProgram {
-    /// Name, as a run names its engine.
-    pub name: String,
-    /// Version, as the program states it.
-    pub version: String,
-    /// Number of its processes.
-    pub ranks: u32,
-}
-
-impl fmt::Display for EngineProgram {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, version, ranks } = self;
-        write!(f, "{name} {version}, {ranks} {}", if *ranks == 1 { "rank" } else { "ranks" })
-    }
-}
+use grainlab_core::{Cell, EngineProgram, Mat3, Packing};
+use std::fmt::Debug;
 
 /// Measurements of an engine on its present contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +33,8 @@ pub struct Observables {
 ///
 /// # Contract
 /// - An engine changes only in the methods that take `&mut self`, and is a function of what it was told: the same calls give
-///   the same bits. Where it is [another program](Self::program), observing it changes rounding errors.
+///   the same bits, unless it [states otherwise](Self::is_repeatable). Where it is [another program](Self::program), observing
+///   it changes rounding errors.
 /// - Strain and strain rate are positive in extension, stress in compression; six components have Voigt order, as tensor
 ///   components. Velocities are relative to the affine motion.
 /// - After an error of [`run`](Self::run) an engine with [`save`](Self::save) returns by [`restore`](Self::restore); one
@@ -67,13 +50,13 @@ pub trait ParticleEngine: Debug + Send + Sync {
     ///
     /// # Errors
     /// A setting that is out of range or that the engine does not have, by name.
-    fn begin_phase(&mut self, settings: &EngineSettings) -> Result<(), ExperimentError>;
+    fn begin_phase(&mut self, settings: &EngineSettings) -> Result<(), EngineError>;
 
     /// Imposes a strain rate, 1/s.
     ///
     /// # Errors
     /// A component that is not finite.
-    fn set_rate(&mut self, rate: &[f64; 6]) -> Result<(), ExperimentError>;
+    fn set_rate(&mut self, rate: &[f64; 6]) -> Result<(), EngineError>;
 
     /// The strain rate in force, 1/s.
     fn rate(&self) -> [f64; 6];
@@ -82,8 +65,8 @@ pub trait ParticleEngine: Debug + Send + Sync {
     /// is then observed.
     ///
     /// # Errors
-    /// A state beyond the contact law, an instability, or [`grainlab_dem::DemError::Stopped`].
-    fn run(&mut self, steps: u32) -> Result<(Mat3, Observables), ExperimentError>;
+    /// A state beyond the contact law, an instability, or [`EngineError::Stopped`].
+    fn run(&mut self, steps: u32) -> Result<(Mat3, Observables), EngineError>;
 
     /// Solver steps done, counted from those of the packing that the engine started from.
     fn steps(&self) -> u64;
@@ -98,28 +81,34 @@ pub trait ParticleEngine: Debug + Send + Sync {
     ///
     /// # Errors
     /// Grains that overlap beyond the contact law.
-    fn observables(&self) -> Result<Observables, ExperimentError>;
+    fn observables(&self) -> Result<Observables, EngineError>;
 
     /// The present state; `deformation` is the deformation gradient since the reference state.
     ///
     /// # Errors
     /// A program that does not answer.
-    fn packing(&self, deformation: Mat3) -> Result<Packing, ExperimentError>;
+    fn packing(&self, deformation: Mat3) -> Result<Packing, EngineError>;
 
     /// The program, if it is not ours.
     fn program(&self) -> Option<&EngineProgram> {
         None
     }
 
+    /// False if the same calls may give other rounding errors, as where a graphics processor sums in no fixed order. A run is
+    /// then not repeated bit for bit.
+    fn is_repeatable(&self) -> bool {
+        true
+    }
+
     /// State beside the packing that [`EngineFactory::resume`] needs; empty for most engines.
     ///
     /// # Errors
     /// A program that does not answer.
-    fn own_state(&self) -> Result<Vec<u8>, ExperimentError> {
+    fn own_state(&self) -> Result<Vec<u8>, EngineError> {
         Ok(Vec::new())
     }
 
-    /// Sets threads, instruction set and the flag that stops a computation. No result depends on them. Engines that divide
+    /// Sets threads and the flag that stops a computation. No result depends on them. Engines that divide
     /// their work otherwise ignore it.
     fn set_compute(&mut self, _compute: &Compute) {}
 
@@ -161,14 +150,6 @@ pub trait EngineFactory: Debug + Send + Sync {
         None
     }
 
-    /// Refuses a scene with a part that engines of this kind do not have, before its first step.
-    ///
-    /// # Errors
-    /// The part, by its key.
-    fn check(&self, _scene: &Scene) -> Result<(), ExperimentError> {
-        Ok(())
-    }
-
     /// An engine in the state of `packing`, with the [`ParticleEngine::own_state`] that was saved with it.
     ///
     /// # Errors
@@ -180,7 +161,7 @@ pub trait EngineFactory: Debug + Send + Sync {
         settings: &EngineSettings,
         rate: &[f64; 6],
         compute: &Compute,
-    ) -> Result<Box<dyn ParticleEngine>, ExperimentError> {
+    ) -> Result<Box<dyn ParticleEngine>, EngineError> {
         self.start(packing, settings, rate, compute)
     }
 
@@ -195,5 +176,5 @@ pub trait EngineFactory: Debug + Send + Sync {
         settings: &EngineSettings,
         rate: &[f64; 6],
         compute: &Compute,
-    ) -> Result<Box<dyn ParticleEngine>, ExperimentError>;
+    ) -> Result<Box<dyn ParticleEngine>, EngineError>;
 }

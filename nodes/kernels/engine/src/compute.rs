@@ -1,60 +1,44 @@
-//! Means of computing a step: instruction set and threads, neither of which changes a bit of the result; and a flag that
-//! ends a computation early.
+//! Means of computing a step: threads, which change no bit of the result, and a flag that ends a computation early.
 
-use crate::simd::instruction_set::Simd;
 use rayon::ThreadPool;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Grains that are worth a thread of their own.
-const GRAINS_PER_THREAD: usize = 2000;
-
 /// Most threads: no machine has more processors, and as many stacks fit into its memory.
 const MOST_THREADS: usize = 1024;
 
-/// Instruction set and threads.
+/// Threads, and the flag that stops a computation.
 #[derive(Clone, Debug)]
 pub struct Compute {
-    simd: Simd,
     threads: usize,
     pool: Option<Arc<ThreadPool>>,
     stop: Option<Arc<AtomicBool>>,
 }
 
-/// Why an instruction set or a number of threads is not available.
+/// Why a number of threads is not available.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ComputeError {
-    /// The processor lacks the instruction set.
-    #[error("this processor has no {0}; it has {available}", available = names(&Simd::available()))]
-    Simd(Simd),
-    /// Threads could not be started.
-    #[error("cannot use {threads} threads: {reason}")]
-    Threads {
-        /// Threads asked for.
-        threads: usize,
-        /// Reason in words.
-        reason: String,
-    },
-}
-
-fn names(sets: &[Simd]) -> String {
-    sets.iter().map(Simd::to_string).collect::<Vec<_>>().join(", ")
+#[error("cannot use {threads} threads: {reason}")]
+pub struct ThreadsError {
+    /// Threads asked for.
+    pub threads: usize,
+    /// Reason in words.
+    pub reason: String,
 }
 
 impl Default for Compute {
-    /// The widest instruction set of this processor, one thread.
+    /// One thread.
     fn default() -> Self {
-        Self { simd: Simd::best(), threads: 1, pool: None, stop: None }
+        Self { threads: 1, pool: None, stop: None }
     }
 }
 
 impl Compute {
-    /// `threads` from 1 to 1024. Several threads divide the chunks of grains among themselves.
-    pub fn new(simd: Simd, threads: usize) -> Result<Self, ComputeError> {
-        if !simd.is_available() {
-            return Err(ComputeError::Simd(simd));
-        }
-        let error = |reason: String| ComputeError::Threads { threads, reason };
+    /// Starts `threads` threads, from 1 to 1024.
+    ///
+    /// # Errors
+    /// No thread, too many, or threads that the system does not start.
+    pub fn new(threads: usize) -> Result<Self, ThreadsError> {
+        let error = |reason: String| ThreadsError { threads, reason };
         let pool = match threads {
             0 => return Err(error("at least one is needed".into())),
             1 => None,
@@ -64,11 +48,11 @@ impl Compute {
                 Some(Arc::new(built.map_err(|e| error(e.to_string()))?))
             }
         };
-        Ok(Self { simd, threads, pool, stop: None })
+        Ok(Self { threads, pool, stop: None })
     }
 
     /// Adds a flag that another thread may set: computations then end with
-    /// [`DemError::Stopped`](crate::DemError::Stopped) within about a step.
+    /// [`EngineError::Stopped`](crate::EngineError::Stopped) within about a step.
     pub fn stopping_on(self, flag: Arc<AtomicBool>) -> Self {
         Self { stop: Some(flag), ..self }
     }
@@ -76,17 +60,6 @@ impl Compute {
     /// True if the flag is set.
     pub fn is_stopped(&self) -> bool {
         self.stop.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
-    }
-
-    /// Threads worth using for this many grains and cores. Pairs across the border of two subdomains are evaluated in both,
-    /// so each thread needs some thousands of grains to be worth it.
-    pub fn useful_threads(grains: usize, cores: usize) -> usize {
-        (grains / GRAINS_PER_THREAD).clamp(1, cores.max(1))
-    }
-
-    /// Instruction set in use.
-    pub fn simd(&self) -> Simd {
-        self.simd
     }
 
     /// Number of threads.
@@ -105,7 +78,7 @@ impl Compute {
 
     /// Does one piece of work per subdomain, each on its own thread, and returns the results in order. The pieces should take
     /// equal and short times: a thread that has finished spins until the others have.
-    pub(crate) fn map_subdomains<T: Send, R: Send>(
+    pub fn map_subdomains<T: Send, R: Send>(
         &self,
         pieces: impl Iterator<Item = T>,
         work: impl Fn(T) -> R + Sync + Send,

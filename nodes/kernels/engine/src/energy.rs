@@ -1,14 +1,4 @@
-//! Running energy balance.
-//!
-//! Velocities are those half a step behind the positions, so each step is split at the positions: the works of a kick are the
-//! forces times the mean of the velocities before and after it, which balances the kinetic energy exactly. A spring works
-//! along the path of its contact too, from one position to the next: that changes its energy. The two works differ by the
-//! error of the trapezium rule, of second order in the time step. It is a channel of its own, [`EnergyBalance::integration`].
-//!
-//! Each channel is summed from its own terms, so that the balance closes to rounding at any time step. It then shows a force
-//! in the kernel that is not that of the law, a lost or repeated kick, contact or channel, and a wrong work of the strain. It
-//! cannot show a force that is not −dU/dr, or a contact that moves otherwise than its grains: both are in `integration`,
-//! which then does not fall with the square of the time step.
+//! The energy balance of a run.
 
 /// Energies and works since the balance was switched on, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

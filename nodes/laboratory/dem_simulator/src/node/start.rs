@@ -1,10 +1,9 @@
 //! The checks before the first request: no other simulator, enough readers, one servo.
 
-use crate::DemSimulator;
+use super::{DemSimulator, Stage};
 use crate::duplicate_simulators::Verdict;
-use crate::node::Stage;
 use crate::partner::{different, predecessor};
-use grainlab_msgs::{to_cdr, topics};
+use grainlab_msgs::topics;
 use grainlab_node_kit::{Bus, BusError, Exit, Next, NodeError};
 use std::time::Duration;
 
@@ -16,9 +15,9 @@ const LOOK_AGAIN: Duration = Duration::from_millis(50);
 const TWO_SERVOS: Duration = Duration::from_secs(75);
 
 impl DemSimulator {
-    pub(crate) fn receive_run_states(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<(), BusError> {
+    pub(super) fn receive_run_states(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<(), BusError> {
         while let Some((_, info)) = self.run_states.take_valid(bus)? {
-            if predecessor(&info.writer.participant(), &self.partner.stress.participant()) {
+            if predecessor(&info.writer.participant(), &self.servo.own()) {
                 continue;
             }
             if self.duplicates.note_state(info.writer, now) && self.stage != Stage::Starting {
@@ -31,14 +30,14 @@ impl DemSimulator {
         Ok(())
     }
 
-    pub(crate) fn start(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<Next, NodeError> {
+    pub(super) fn start(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<Next, NodeError> {
         let looked = now.saturating_sub(self.created_at);
         if looked < self.settings.look_around {
             return Ok(Next::Wait(self.settings.look_around - looked));
         }
         let mut simulators = bus.foreign_writers(&topics::STRESS);
         // The process that this one replaces stays in the graph for a while.
-        simulators.retain(|writer| !predecessor(&writer.participant(), &self.partner.stress.participant()));
+        simulators.retain(|writer| !predecessor(&writer.participant(), &self.servo.own()));
         match self.duplicates.verdict(&simulators, now) {
             Verdict::Clear => {}
             Verdict::Wait(writer) => {
@@ -82,31 +81,29 @@ impl DemSimulator {
             return Ok(Next::Wait(LOOK_AGAIN));
         }
         self.began = now;
-        if let Some(message) = self.resumed.take() {
-            self.send_queue.push_packing(to_cdr(&message));
+        if let Some(packing) = self.resumed.take() {
+            self.publication.first_packing(&packing);
         }
-        self.request_next(bus, now)
+        self.exchange(bus, now)
     }
 
     /// The first condition of the start that is not met.
     fn missing(&self, bus: &dyn Bus) -> Option<String> {
         let of_all = self.settings.min_readers;
         for topic in &self.settings.wait_for {
-            let (publisher, needed) = match topic.name {
-                name if name == topics::STRESS.name => (self.stress.id(), of_all),
-                name if name == topics::PACKING.name => {
-                    (self.send_queue.packings.id(), self.settings.min_packing_readers.unwrap_or(of_all))
-                }
-                name if name == topics::CLOCK.name => (self.samples.clock.id(), 1),
-                _ => (self.run_state.id(), of_all),
+            let needed = match topic.name {
+                name if name == topics::PACKING.name => self.settings.min_packing_readers.unwrap_or(of_all),
+                name if name == topics::CLOCK.name => 1,
+                _ => of_all,
             };
+            let is_stress = topic.name == topics::STRESS.name;
+            let publisher = if is_stress { self.servo.stress() } else { self.publication.publisher(topic) };
             let found = bus.readers(publisher);
             if found < needed {
                 return Some(format!("{needed} readers of {}; there are {found}", topic.name));
             }
         }
-        let servo = bus.readers(self.stress.id()) > 0 && bus.writers(self.strain_rate.id()) > 0;
-        (!servo).then(|| {
+        (!self.servo.is_present(bus)).then(|| {
             "a servo: a reader of stress that writes strain_rate (same domain and namespace?)".into()
         })
     }

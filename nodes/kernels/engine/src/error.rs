@@ -1,11 +1,11 @@
-//! Errors of the engine.
+//! Errors of engines.
 
 use grainlab_core::PackingError;
 use grainlab_core::contact::UnknownLaw;
 
-/// Why the engine cannot start or go on.
+/// Why an engine cannot start or go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum DemError {
+pub enum EngineError {
     /// A grain moved too far in one step, or its state is not finite.
     #[error(
         "unstable at step {step}: grain {grain} moves at {speed:e} m/s, more than a tenth of its radius in one step of \
@@ -53,32 +53,6 @@ pub enum DemError {
         /// Persistent id of the grain.
         grain: u32,
     },
-    /// The grains do not fit at the solid fraction asked for.
-    #[error(
-        "could not place grain {placed} of {grains} at random at a solid fraction of {solid_fraction}; lower initial_solid_fraction"
-    )]
-    Placement {
-        /// Grains placed so far.
-        placed: u32,
-        /// Grains asked for.
-        grains: u32,
-        /// Solid fraction asked for.
-        solid_fraction: f64,
-    },
-    /// The state is not a gas of hard spheres.
-    #[error("the event-driven gas cannot take up this state: {0}")]
-    HardSpheres(String),
-    /// The hard spheres are jammed.
-    #[error(
-        "the event-driven gas jammed at a solid fraction of {solid_fraction:.4}: {cause}; end the gas phase at a lower \
-         solid fraction"
-    )]
-    Jammed {
-        /// Solid fraction reached.
-        solid_fraction: f64,
-        /// Sign that it is jammed.
-        cause: String,
-    },
     /// The flag of [`Compute::stopping_on`](crate::Compute::stopping_on) was set.
     #[error("the computation was stopped")]
     Stopped,
@@ -108,5 +82,21 @@ pub enum DemError {
         component: &'static str,
         /// The value found.
         value: f64,
+    },
+    /// An engine of another program refuses its input, or cannot go on from its state.
+    #[error("{engine}: {reason}")]
+    Failed {
+        /// Name of the engine.
+        engine: String,
+        /// Why, and what to do.
+        reason: String,
+    },
+    /// The program of another engine ended, or does not answer. A new one can go on from the last packing.
+    #[error("{engine}: {reason}")]
+    Lost {
+        /// Name of the engine.
+        engine: String,
+        /// Fault, with the last lines of the program.
+        reason: String,
     },
 }

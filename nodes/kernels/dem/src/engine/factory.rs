@@ -1,14 +1,27 @@
-//! The engine of this project behind the trait.
+//! The engine behind the contract of a run.
 
-use crate::engine::{EngineFactory, Observables, ParticleEngine};
-use crate::error::ExperimentError;
+use super::checkpoint::Checkpoint;
+use super::engine::Engine;
+use crate::simd::instruction_set::Simd;
 use grainlab_core::{Mat3, Packing};
-use grainlab_dem::{Checkpoint, Compute, DemError, EnergyBalance, Engine, EngineSettings, Features};
+use grainlab_engine::{
+    Compute, EnergyBalance, EngineError, EngineFactory, EngineSettings, Features, Observables, ParticleEngine,
+};
 use std::sync::Arc;
 
-/// Starts engines of `grainlab_dem`.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Dem;
+/// Starts engines of this crate.
+#[derive(Clone, Copy, Debug)]
+pub struct Dem {
+    /// Instruction set of the engines. Results do not depend on it.
+    pub simd: Simd,
+}
+
+/// Engines with the widest instruction set of this processor.
+impl Default for Dem {
+    fn default() -> Self {
+        Self { simd: Simd::best() }
+    }
+}
 
 impl EngineFactory for Dem {
     fn start(
@@ -17,8 +30,9 @@ impl EngineFactory for Dem {
         settings: &EngineSettings,
         rate: &[f64; 6],
         compute: &Compute,
-    ) -> Result<Box<dyn ParticleEngine>, ExperimentError> {
+    ) -> Result<Box<dyn ParticleEngine>, EngineError> {
         let mut engine = Engine::from_packing(packing, *settings)?;
+        engine.set_simd(self.simd);
         engine.set_compute(compute.clone());
         engine.set_rate(rate)?;
         engine.initialise()?;
@@ -39,7 +53,7 @@ impl ParticleEngine for DemEngine {
     }
 
     /// Forces and stress are evaluated again, as in a resumed run, so that both give the same result.
-    fn begin_phase(&mut self, settings: &EngineSettings) -> Result<(), ExperimentError> {
+    fn begin_phase(&mut self, settings: &EngineSettings) -> Result<(), EngineError> {
         self.engine.set_settings(*settings)?;
         // A resumed run does not sort here, but its packing has the order of this one.
         self.engine.sort_spatially();
@@ -48,15 +62,15 @@ impl ParticleEngine for DemEngine {
         Ok(())
     }
 
-    fn set_rate(&mut self, rate: &[f64; 6]) -> Result<(), ExperimentError> {
-        Ok(self.engine.set_rate(rate)?)
+    fn set_rate(&mut self, rate: &[f64; 6]) -> Result<(), EngineError> {
+        self.engine.set_rate(rate)
     }
 
     fn rate(&self) -> [f64; 6] {
         self.engine.rate()
     }
 
-    fn run(&mut self, steps: u32) -> Result<(Mat3, Observables), ExperimentError> {
+    fn run(&mut self, steps: u32) -> Result<(Mat3, Observables), EngineError> {
         let compute = self.engine.compute().clone();
         compute.install(|| {
             let deformation = self.engine.run(steps)?;
@@ -77,7 +91,7 @@ impl ParticleEngine for DemEngine {
         self.engine.time_step()
     }
 
-    fn observables(&self) -> Result<Observables, ExperimentError> {
+    fn observables(&self) -> Result<Observables, EngineError> {
         let seen = self.engine.observables()?;
         Ok(Observables {
             stress: seen.stress,
@@ -90,7 +104,7 @@ impl ParticleEngine for DemEngine {
         })
     }
 
-    fn packing(&self, deformation: Mat3) -> Result<Packing, ExperimentError> {
+    fn packing(&self, deformation: Mat3) -> Result<Packing, EngineError> {
         Ok(self.engine.packing(deformation))
     }
 
@@ -113,7 +127,7 @@ impl ParticleEngine for DemEngine {
 
     fn restore(&mut self) -> bool {
         let Some(kept) = self.kept.take() else { return false };
-        let restored: Result<(), DemError> = self.engine.restore(Arc::unwrap_or_clone(kept));
+        let restored = self.engine.restore(Arc::unwrap_or_clone(kept));
         // The forces of this state were valid when it was kept. If they fail now, the state is restored all the same.
         let _ = self.engine.initialise();
         restored.is_ok()
