@@ -30,8 +30,8 @@ pub(super) fn note_message(note: &Note) -> msg::Note {
     }
 }
 
-/// Returns the notes of a result with this status. Earlier versions and other programs send sentences alone, the first of which
-/// is the reason of the status.
+/// Returns the notes of a result with this status. Earlier versions and other programs send sentences alone; the first sentence
+/// is the reason for the status.
 pub(super) fn notes(
     check: Check,
     notes: &[msg::Note],

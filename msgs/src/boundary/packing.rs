@@ -106,7 +106,7 @@ fn path_message(path: &PathPosition) -> msg::PathPosition {
     }
 }
 
-/// Returns the path of a message; that of a recording of an earlier version is in the run state.
+/// Returns the path of a message. Earlier versions recorded the path in the run state alone.
 fn path(m: &msg::Packing) -> Result<Option<PathPosition>, BoundaryError> {
     let path = CHECK.optional("path", &m.path, |_, path| position(path))?;
     Ok(path.or_else(|| earlier_path(&m.run_state)))

@@ -7,7 +7,7 @@
 //! - `publication`: all other messages; `send_queue`: messages in order, none lost if a reader is behind
 //! - `samples`: some of the requests, for viewers; `messages`: messages of the run
 //! - `duplicate_simulators`: other simulators on the same topics
-//! - `inversions`: those of the last packing, awaited before the end
+//! - `inversions`: the results of the last packing that the end waits for
 
 mod duplicate_simulators;
 mod inversions;

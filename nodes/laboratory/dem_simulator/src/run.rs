@@ -68,7 +68,7 @@ impl Run {
             }
             Some(_) => {
                 log::info!(
-                    "the answer to request {sequence} is not that of the servo's law: speculative steps are switched off"
+                    "the answer to request {sequence} differs from the answer of the servo's law: speculative steps are switched off"
                 );
                 self.speculates = false;
             }

@@ -81,7 +81,7 @@ pub struct Settings {
     pub inverted_within: Duration,
     /// True to continue with the answer predicted by the servo's law while the answer is in transit.
     pub ahead: bool,
-    /// Name of the engine; empty for that of the packing that the run resumes from, which is ours for a new run.
+    /// Name of the engine; empty for the engine of the packing that the run resumes from, and for ours in a new run.
     pub engine: String,
     /// Starts an engine that is another program.
     pub lammps: Lammps,
@@ -112,7 +112,7 @@ impl Settings {
         match wanted {
             // A run that continues with another engine keeps its arguments.
             OURS if resumed.is_none() && self.lammps.command != LAMMPS_COMMAND => Err(NodeError::usage(
-                "engine_command is given, and the engine is grainlab: name that of the command (--engine lammps)",
+                "engine_command is given, and the engine is grainlab: name the engine of the command (--engine lammps)",
             )),
             OURS => Ok(Arc::new(Dem { simd })),
             grainlab_lammps::NAME => {

@@ -299,7 +299,7 @@ fn contact(_: usize, sample: &InferredSample<'_>) -> Html {
     };
     let unknowns = [
         unknown("k_t/k_n", &e.stiffness_ratio),
-        unknown("ln of the stiffness over that of the law", &e.level),
+        unknown("ln of the stiffness divided by the stiffness of the law", &e.level),
         unknown("scatter over the stated errors", &e.noise),
     ];
     let header =

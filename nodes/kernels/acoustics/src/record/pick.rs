@@ -14,7 +14,7 @@ pub(super) const COMMON_VARIANCE_SHARE: f64 = 0.5;
 pub struct Pick {
     /// The feature that was picked.
     pub method: WaveMethod,
-    /// Travel time, without that of the system and without the bias, s.
+    /// Travel time without the delay of the system and without the bias, s.
     pub time: f64,
     /// Standard deviation of the time, s.
     pub time_stddev: f64,
@@ -22,7 +22,7 @@ pub struct Pick {
     pub bias: f64,
     /// Speed of long waves, m/s.
     pub speed: f64,
-    /// Standard deviation of the speed, m/s, with those of the distance and of the delay.
+    /// Standard deviation of the speed, m/s, with the errors of distance and delay.
     pub speed_stddev: f64,
     /// Part of it that the records of one path and mode share, m/s: distance, delay, and half of the variance of the time but for what
     /// contradictory picks add.

@@ -83,7 +83,7 @@ impl Note {
         &self.values
     }
 
-    /// Returns the numbers with their names; those of a note of another program have none.
+    /// Returns the numbers with their names; none for a note of another program.
     pub fn named_values(&self) -> impl Iterator<Item = (&'static str, f64)> {
         let names = if let Kind::Listed(code) = self.kind { code.numbers() } else { &[] };
         names.iter().copied().zip(self.values.iter().copied())

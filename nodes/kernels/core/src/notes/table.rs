@@ -31,7 +31,7 @@ macro_rules! with_table {
     /// An input of the state contributes most of the variance of a quantity.
     WidenedMost widened_most Ok [input quantity] (share)
         format!("{input} widens most: {:.0} % of the variance of {quantity} is due to it", share * 100.0);
-    /// The Poisson ratio of the grains is not that of the calibration's packings.
+    /// The grains have another Poisson ratio than the packings of the calibration.
     OtherGrains other_grains Extrapolated [] (poisson calibrated)
         format!("the Poisson ratio of the grains is {poisson}, that of the calibration {calibrated}: moduli are scaled by the \
                  Hertz modulus alone");
@@ -94,15 +94,15 @@ macro_rules! with_table {
     /// The contact law is unknown; Hertz–Mindlin contacts were assumed.
     ContactLawAssumed contact_law_assumed Ok [] ()
         "the contact law is not known: the contacts were taken as Hertz-Mindlin contacts";
-    /// Unknown contacts are inferred with the structure: k_t/k_n, its standard deviation, and the moduli over those of smooth contacts.
+    /// Unknown contacts are inferred with the structure: k_t/k_n, its standard deviation, and the moduli divided by the moduli of smooth contacts.
     ContactsInferred contacts_inferred Ok [] (ratio stddev level)
         format!("the contacts are not known, and are inferred: k_t/k_n {ratio:.2} +- {stddev:.2}, moduli {level:.2} times those of smooth contacts; z \
                  follows from the ratio of the moduli, and from simulated preparations");
-    /// Contacts have another law than those of the calibration.
+    /// The contacts have another law than the contacts of the calibration.
     ContactsStated contacts_stated Ok [law] ()
         format!("{law} contacts: the model takes their k_t/k_n, and not {}, because it takes no size of the grains; z follows from the ratio \
                  of the moduli, and from simulated preparations", if law == "rough" { "their roughness" } else { "their stiffness" });
-    /// Moduli are far from those of any contacts of these grains.
+    /// No contacts of these grains have such moduli.
     FarLevel far_level Contradictory [] (ratio)
         format!("the moduli are {ratio:.2} times those of the contacts of these grains: check pressure, material, density and units");
     /// The model has contacts in all directions alike.
@@ -114,7 +114,7 @@ macro_rules! with_table {
     /// The same share, outside [0, 1].
     StickingShareOutside sticking_share_outside Extrapolated [] (share)
         format!("the shear modulus over Theta is that of contacts of which a share f = {share:.3} (outside [0, 1]) sticks");
-    /// The contacts resist rolling, and those of the calibration's packings do not.
+    /// The contacts resist rolling; the contacts of the calibration do not.
     RollingResistance rolling_resistance Extrapolated [] ()
         "the contacts resist rolling; no model knows packings whose contacts do";
 
@@ -141,7 +141,7 @@ macro_rules! with_table {
     /// A coordination number is less than one contact per grain.
     CoordinationAbsurd coordination_absurd Extrapolated [quantity] (value)
         format!("{quantity} = {value:.3} is less than one contact per grain: check the units of moduli and pressure (Pa)");
-    /// G13/G12 is outside [2/3, 3/2], the range of packings whose only anisotropy is that of the contacts.
+    /// G13/G12 is outside [2/3, 3/2], the range of packings that are anisotropic in their contacts alone.
     RatioUnusual ratio_unusual Extrapolated [] (ratio)
         format!("G13/G12 = {ratio:.4} is outside [2/3, 3/2], the range of contact anisotropy alone");
     /// ε is outside [−1/2, 1]: Eq. 6 then gives some directions a negative contact density.
@@ -203,7 +203,7 @@ macro_rules! with_table {
                  preferred to isotropy by {sigma:.1} sigma");
     /// No axis was named, and the speeds have none.
     AxisTaken axis_taken Ok [reason] () format!("no axis was named, and e3 was taken: {reason}");
-    /// The axis taken is not that of the data.
+    /// The axis taken is not the axis of the data.
     AxisDiffers axis_differs Ok [] (x y z named_x named_y named_z)
         format!("the axis taken is ({x:.3}, {y:.3}, {z:.3}), and the data name ({named_x:.3}, {named_y:.3}, {named_z:.3}): set the \
                  parameter axis to found if theirs is meant");
@@ -383,11 +383,11 @@ macro_rules! with_table {
     OtherContactLaw other_contact_law Unknown [law] ()
         format!("unknown: the contact law is {law}; this model is for Hertz-Mindlin contacts, whose stiffness follows from the material \
                  of the grains: free-contact is for others");
-    /// The moduli are those of contacts without tangential springs.
+    /// The moduli belong to contacts without tangential springs.
     SmoothGrains smooth_grains Unknown [] ()
         "unknown: the moduli are those of smooth grains, whose contacts have no tangential springs; every model is for \
          contacts that have them";
-    /// A modulus, Pa, that follows from the others is not that of a stable medium.
+    /// A modulus, Pa, that follows from the others makes the medium unstable.
     Unstable unstable Unknown [modulus] (value)
         format!("from the other moduli follows {modulus} = {value:e} Pa: they are not of one medium, or not of one state");
     /// A structure or a state is outside the domain of a model.
@@ -412,7 +412,7 @@ macro_rules! with_table {
     NoCoordination no_coordination Unknown [calibration] (nearest low high)
         format!("no coordination number of calibration `{calibration}` (from {low:.3} to {high:.3}) gives such moduli; those of {nearest:.3} \
                  differ least: check units, pressure and material");
-    /// The packing differs too much from those of the calibration.
+    /// The packing differs too much from the packings of the calibration.
     TooFar too_far Unknown [quantity calibration] (value low high) {
         let range = [low, high];
         let [value, low, high] =

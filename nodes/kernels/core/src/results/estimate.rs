@@ -81,7 +81,7 @@ impl Estimate {
         self.values[quantity].and(stddev(&self.covariance_model, quantity))
     }
 
-    /// Adds notes on the data before those of the model, and takes the status of all of them. The worst come first.
+    /// Adds notes on the data before the notes of the model, and takes the worst status. The worst notes come first.
     pub fn add_notes(&mut self, of_data: &[Note]) {
         self.notes.splice(0..0, of_data.iter().cloned());
         self.decide();

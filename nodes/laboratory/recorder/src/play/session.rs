@@ -125,7 +125,7 @@ impl Session {
         say!("grainlab: {} sent{to}", count(self.sent, "message"));
         if self.unread > 0 {
             let unread = count(self.unread, "message");
-            say!("grainlab: {unread} left out: their definition differs from that of this program");
+            say!("grainlab: {unread} left out: this program has another definition of their types");
         }
         if ended == Ended::Stuck {
             say!("grainlab: the playback ended before the end of the recording");

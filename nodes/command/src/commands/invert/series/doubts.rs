@@ -81,8 +81,8 @@ impl Sentences {
         self.doubts.extend(in_radians(&sample.lines));
         if sample.lines.iter().any(|line| line.pressure_sigma_pa.is_some_and(|sigma| sigma > 0.0)) {
             self.doubt(
-                "pressure_sigma_pa was taken as that of a factor of all pressures: an offset of them looks like another contact law, and \
-                 changes z; invert again with the pressures shifted by it",
+                "pressure_sigma_pa was taken as the error of one factor of all pressures: an offset of all pressures looks like another contact \
+                 law, and changes z; invert again with the pressures shifted by the offset",
             );
         }
         if let Some(difference) = sample.series.unequal_twins() {
@@ -115,7 +115,7 @@ impl Sentences {
         }
         for (name, quantity) in [
             ("k_t/k_n", &e.stiffness_ratio),
-            ("the stiffness over that of the law", &e.level),
+            ("the stiffness divided by the stiffness of the law", &e.level),
             ("the noise", &e.noise),
         ] {
             if quantity.is_undetermined() {
@@ -163,7 +163,7 @@ impl Sentences {
         }
         if e.level.mean.abs() > LEVEL_TOO_FAR {
             self.doubt(format!(
-                "the stiffness is {:.2} times that of the law: check material, density and units",
+                "the stiffness is {:.2} times the stiffness of the law: check material, density and units",
                 e.level.mean.exp()
             ));
         }
@@ -269,7 +269,7 @@ pub(super) fn contradiction(sample: &Sample) -> String {
     if e.has_far_level() {
         let ratio = number(e.level.mean.exp(), 2);
         faults.push(format!(
-            "the stiffness is {ratio} times that of the law: check pressure, material, density and units"
+            "the stiffness is {ratio} times the stiffness of the law: check pressure, material, density and units"
         ));
     }
     if e.has_unequal_twins() {
