@@ -215,7 +215,6 @@ fn check_name(name: &str, is_constant: bool) -> Result<(), String> {
     Err(format!("the name {name:?} is not {case}"))
 }
 
-/// Returns a value as a Rust literal.
 fn literal(primitive: &Primitive, value: &str) -> Result<String, String> {
     fn read<T: FromStr + Debug>(value: &str) -> Option<String> {
         value.parse().ok().map(|value: T| format!("{value:?}"))

@@ -1,7 +1,7 @@
 //! The error of bytes that are no message of a type.
 
 /// Why bytes are not a valid message.
-#[derive(Debug, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{type_name}: {problem}")]
 pub struct DecodeError {
     /// The expected type.

@@ -79,6 +79,17 @@ impl Health {
         self.with("phase", &phase.name).with("unmet", &phase.unmet).with("phase_share", share)
     }
 
+    /// Report of a node that measures every packing, at work or not.
+    #[must_use]
+    pub fn with_measuring(self, is_at_work: bool) -> Self {
+        self.with("at_work", is_at_work)
+    }
+
+    /// Returns whether the node measures a packing now; `None` if it does not measure every packing.
+    pub fn measuring(&self) -> Option<bool> {
+        self.value("at_work")?.parse().ok()
+    }
+
     /// Returns the value under this name.
     pub fn value(&self, name: &str) -> Option<&str> {
         self.values.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())

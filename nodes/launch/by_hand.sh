@@ -23,7 +23,7 @@ others="$others $!"
 GRAINLAB_MEMBER=4 setsid "$grainlab" run servo_controller --ros-args -p min_readers:=2 &
 others="$others $!"
 GRAINLAB_MEMBER=5 setsid "$grainlab" run dem_simulator --ros-args -p scene:="$scene" -p seed:="$seed" \
-    -p wait_for:=[stress,packing,clock] -p min_readers:=2 -p exit_when_finished:=true -p until_inverted:=[packing_report] &
+    -p wait_for:=[stress,packing,clock] -p min_readers:=2 -p finish:=inverted &
 simulator=$!
 
 # Each node has its own session: Ctrl-C reaches only this script, which ends the nodes in order.

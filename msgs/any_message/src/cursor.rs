@@ -70,7 +70,6 @@ impl<'a> Cursor<'a> {
         self.body.len() - self.at
     }
 
-    /// An error unless at least `bytes` are left.
     pub(crate) fn require(&self, bytes: u64) -> Result<(), String> {
         let (at, left) = (self.at, self.left());
         if bytes <= left as u64 {

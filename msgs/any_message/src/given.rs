@@ -47,7 +47,6 @@ fn message(kind: &Arc<MessageType>, given: Option<&Json>) -> Result<Message, Str
     Ok(Message { kind: kind.clone(), values: kind.fields.iter().map(of).collect::<Result<_, _>>()? })
 }
 
-/// A default of a message file.
 fn written(text: &str) -> Json {
     let plain = text.replace('\'', "\"").replace("True", "true").replace("False", "false");
     serde_json::from_str(&plain).unwrap_or_else(|_| Json::String(text.to_owned()))
@@ -121,7 +120,6 @@ fn primitive(kind: Primitive, given: &Json) -> Option<Value> {
     })
 }
 
-/// The array of these values, all of one kind.
 fn gathered(element: &Element, all: Vec<Value>) -> Array {
     let all = all.into_iter();
     match element {

@@ -7,13 +7,10 @@ use crate::names::{check_constant, check_field};
 pub(crate) struct Declaration<'a> {
     pub(crate) type_text: &'a str,
     pub(crate) name: &'a str,
-    /// Value of a constant.
     pub(crate) constant: Option<&'a str>,
-    /// Default of a field.
     pub(crate) default: Option<&'a str>,
 }
 
-/// The parts of the type of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TypeText<'a> {
     pub(crate) base: &'a str,

@@ -3,7 +3,6 @@
 use crate::lines::outside_quotes;
 use crate::types::{Element, FieldType, Length, Primitive};
 
-/// An error unless `text` is a value of the type.
 pub(crate) fn check_default(text: &str, kind: &FieldType) -> Result<(), String> {
     let most = match kind.length {
         Length::One => return check(text, &kind.element),
@@ -22,7 +21,6 @@ pub(crate) fn check_default(text: &str, kind: &FieldType) -> Result<(), String> 
     values.into_iter().try_for_each(|value| check(value, &kind.element))
 }
 
-/// An error unless `text` is a value of one element.
 pub(crate) fn check(text: &str, element: &Element) -> Result<(), String> {
     match element {
         Element::Primitive(primitive) => check_primitive(text, *primitive),

@@ -97,7 +97,6 @@ fn short(name: &str) -> String {
     }
 }
 
-/// Splits the text of a service file.
 fn request_and_response(text: &str) -> Option<(&str, &str)> {
     let bar = text.lines().find(|line| line.trim() == "---")?;
     let start = bar.as_ptr().addr() - text.as_ptr().addr();

@@ -62,7 +62,6 @@ macro_rules! values {
                 })
             }
 
-            /// Reads an array of primitives.
             pub(crate) fn read(kind: Primitive, from: &mut Cursor<'_>, length: usize) -> Result<Self, String> {
                 Ok(match kind {
                     $(Primitive::$kind => Self::$kind(from.many(length)?),)*
@@ -78,7 +77,6 @@ macro_rules! values {
                 }
             }
 
-            /// Writes an array of primitives.
             pub(crate) fn write(&self, to: &mut Vec<u8>) {
                 match self {
                     $(Self::$kind(all) => put(all, to),)*
@@ -88,7 +86,6 @@ macro_rules! values {
         }
 
         impl Value {
-            /// Writes a primitive.
             pub(crate) fn write(&self, to: &mut Vec<u8>) {
                 match self {
                     $(Self::$kind(v) => put(&[*v], to),)*
@@ -101,7 +98,6 @@ macro_rules! values {
 with_primitives!(values);
 
 impl Array {
-    /// Returns an array of this element without values.
     pub(crate) fn empty(element: &Element) -> Self {
         match element {
             Element::Primitive(kind) => Self::of(*kind, Vec::new()),

@@ -66,13 +66,18 @@ pub struct WaveSpeedsReading {
     pub contact_law: Option<ContactLaw>,
     /// True if the sample was measured without tangential springs.
     pub smooth: bool,
-    /// The speeds, in the order of the message; may be empty.
+    /// The speeds, in the order of the message; empty if the sender found none, and the notes then say why.
     pub speeds: Vec<MeasuredWave>,
     /// Notes; may be empty.
     pub notes: Vec<Note>,
 }
 
 impl WaveSpeedsReading {
+    /// True if the sender found no speeds, and says why.
+    pub fn is_declined(&self) -> bool {
+        self.speeds.is_empty() && !self.notes.is_empty()
+    }
+
     /// Direction, polarization and speed, as used by the kernels.
     pub fn measured(&self) -> Vec<WaveSpeed> {
         self.speeds.iter().map(|s| s.wave).collect()

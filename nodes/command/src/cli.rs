@@ -219,7 +219,6 @@ mod tests {
         }
     }
 
-    /// The commands of the help as a table in Markdown.
     fn table() -> String {
         let line = |c: &clap::Command| {
             // A bar would end the cell.
@@ -230,8 +229,7 @@ mod tests {
             + &Cli::command().get_subcommands().filter(|c| !c.is_hide_set()).map(line).collect::<String>()
     }
 
-    /// The table between two comments of the README is that of the command line. With `GRAINLAB_BLESS=1` the test
-    /// writes it.
+    /// With `GRAINLAB_BLESS=1` the test writes the table between two comments of the README.
     #[test]
     fn the_table_of_the_readme_has_exactly_the_commands_and_their_descriptions() {
         const MARKS: [&str; 2] =

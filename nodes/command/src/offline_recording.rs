@@ -6,7 +6,6 @@ use grainlab_msgs::{Guid, Message, Topic, to_cdr};
 use grainlab_recordings::{Incoming, RunWriter, SESSION_KEY, TopicSpec, WriterOptions};
 use std::path::Path;
 
-/// A message to record.
 pub(crate) struct Recorded {
     topic: Topic,
     /// Stamp of the message, ns.
@@ -15,7 +14,6 @@ pub(crate) struct Recorded {
 }
 
 impl Recorded {
-    /// A message with this header.
     pub(crate) fn new<T: Message>(topic: Topic, header: &Header, message: &T) -> Self {
         let seconds = u64::try_from(header.stamp.sec).unwrap_or(0);
         let mut payload = to_cdr(message);
@@ -25,14 +23,12 @@ impl Recorded {
     }
 }
 
-/// Writes messages. Their log times are their stamps, increased where necessary to stay in order: two
-/// recordings of the same packings are equal.
+/// Log times are the stamps, increased where necessary to stay in order: two recordings of the same packings are equal.
 pub(crate) struct OfflineRecording {
     writer: RunWriter,
     /// A placeholder for the writer, since there is no network.
     guid: Guid,
     command: &'static str,
-    /// Number of messages of every topic.
     counts: Vec<(Topic, i64)>,
 }
 
@@ -58,7 +54,6 @@ impl OfflineRecording {
         Ok(Self { writer, guid, command, counts: topics.iter().map(|t| (*t, 0)).collect() })
     }
 
-    /// Records the next message of one of its topics.
     pub(crate) fn put(&mut self, message: &Recorded) -> Result<(), Failure> {
         let Recorded { topic, time, payload } = message;
         let known = self.counts.iter_mut().find(|(known, _)| known.name == topic.name);

@@ -101,10 +101,8 @@ impl Record {
             self.bodies(topic).iter().filter_map(|body| step(body)).collect()
         };
         let packings = steps(&topics::PACKING, &|b| from_cdr::<msg::Packing>(b).ok().map(|m| m.step));
-        let report = |b: &[u8]| from_cdr::<msg::PackingReport>(b).ok();
-        let measured = steps(&topics::PACKING_REPORT, &|b| Some(report(b)?.source_step));
-        let jammed = steps(&topics::PACKING_REPORT, &|b| {
-            report(b).filter(|m| !m.stiffness.is_empty()).map(|m| m.source_step)
+        let measured = steps(&topics::PACKING_REPORT, &|b| {
+            from_cdr::<msg::PackingReport>(b).ok().map(|m| m.source_step)
         });
         let found = steps(&topics::MICROSTRUCTURE, &|b| {
             from_cdr::<msg::Microstructure>(b).ok().map(|m| m.source_step)
@@ -114,7 +112,7 @@ impl Record {
             .next()
             .map(|s| format!("the packing of step {s} was not analysed"));
         packing.or_else(|| {
-            jammed.difference(&found).next().map(|s| format!("the moduli of step {s} were not inverted"))
+            measured.difference(&found).next().map(|s| format!("the report of step {s} was not inverted"))
         })
     }
 }

@@ -223,7 +223,6 @@ impl Args {
 
 #[cfg(feature = "studio")]
 impl Args {
-    /// The launch of a member of a campaign, in this directory.
     pub(crate) fn of_member(campaign: &Campaign, member: &Member, run: PathBuf) -> Self {
         Self {
             words: std::iter::once(&campaign.launch).chain(&campaign.arguments).cloned().collect(),
@@ -312,7 +311,6 @@ fn read_file(path: Option<&Path>) -> Result<LaunchFile, Failure> {
     LaunchFile::parse(&text, folder).map_err(|e| Failure::usage(format!("{}: {e}", path.display())))
 }
 
-/// Creates the next free directory.
 fn new_directory(root: &Path, scene: &SceneText) -> Result<PathBuf, Failure> {
     let failed = Failure::at(root);
     let directory = create_run_directory(root, &scene.scene.name, scene.scene.seed).map_err(&failed)?;

@@ -87,10 +87,7 @@ fn name(text: &str) -> Result<String, String> {
     Ok(text.to_owned())
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// A folder that exists or cannot be written, or a source that is not there.
+/// Fails if the folder exists or cannot be written, or the source is not there.
 pub(crate) fn run(command: &NewCommand) -> Result<Exit, Failure> {
     let NewCommand::Node(args) = command;
     let folder = args.output.clone().unwrap_or_else(|| args.name.clone().into());

@@ -9,9 +9,7 @@ mod writer;
 
 use crate::offline_recording::Recorded;
 
-/// The result of one packing.
 pub(crate) struct Found<R> {
-    /// The printed part.
     pub(crate) shown: R,
     /// The packing lacks what was sought.
     pub(crate) is_without: bool,

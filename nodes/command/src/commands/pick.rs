@@ -67,7 +67,6 @@ pub(crate) struct Args {
 /// Speed of the slowest wave in a record, over that of the pick, above which the record may end before S arrives.
 const SOON: f64 = 0.5;
 
-/// A row with its picks, or the reason why it has none.
 type Found = (Row, Result<Picks, String>);
 
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
@@ -146,7 +145,6 @@ fn value((row, picked): &Found) -> Value {
     }
 }
 
-/// Properties of a record that its reader should know.
 fn notes(row: &Row, p: &Picks) -> Vec<String> {
     let mut notes: Vec<String> =
         p.missing.iter().map(|(method, why)| format!("no {}: {why}", method.word())).collect();

@@ -39,7 +39,6 @@ pub(crate) struct Args {
     flags: Flags,
 }
 
-/// The settings of these parameters of the node, by name.
 pub(crate) fn settings(given: &[(String, String)]) -> Result<grainlab_acoustic_probe::Settings, Failure> {
     Flags::of(given)?.settings()
 }

@@ -9,7 +9,6 @@ use grainlab_reproduce::{Provenance, Reproduction, Size, campaign_text, pressure
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Grains of each packing of --quick.
 const QUICK: u32 = 500;
 
 const EXAMPLES: &str = "\
@@ -97,7 +96,6 @@ fn observed(state: gather::State<'_>) -> Option<Observed> {
     })
 }
 
-/// Judges each set of values of a campaign.
 fn judge(folder: &Path, format: Format) -> Result<Exit, Failure> {
     let (folder, campaign) = Folder::open(folder)?;
     let (states, exit) = gather::states(&campaign, &folder)?;

@@ -129,7 +129,6 @@ pub(super) fn notes_on(found: &SceneText) -> Vec<String> {
     notes
 }
 
-/// The text of a scene of this name that changes a base.
 fn changes_of(base: &str, name: &str, scene: &Scene) -> String {
     let is_undamped = |phase: &Phase| {
         matches!(phase.kind, PhaseKind::Servo { law: ServoLaw::Normalised { leak: 0.0, .. }, .. })

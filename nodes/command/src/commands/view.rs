@@ -196,7 +196,6 @@ fn picture(args: &Args, file: &Path, png: &Path) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// Name of a packing, from that of its file.
 fn name(file: &Path) -> String {
     let resolved = file.canonicalize().unwrap_or_else(|_| file.to_owned());
     let name = resolved.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();

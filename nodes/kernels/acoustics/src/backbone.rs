@@ -19,14 +19,12 @@ use grainlab_micromechanics::{MicroError, PackingView};
 /// The grains that carry force, with masses and contacts.
 #[derive(Clone, Debug)]
 pub(crate) struct Backbone {
-    /// Contacts between grains that carry force.
     pub(crate) network: SpringNetwork,
     /// Mass of each grain, kg; 0 for rattlers.
     pub(crate) mass: Vec<f64>,
     /// Moment of inertia of each grain over a², where a is the length that scales rotations, kg; 0 for
     /// rattlers.
     pub(crate) inertia: Vec<f64>,
-    /// Softest motions of grains with few contacts.
     pub(crate) clusters: Vec<Cluster>,
     /// Volume of the cell, m³.
     volume: f64,

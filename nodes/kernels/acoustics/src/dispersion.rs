@@ -85,7 +85,6 @@ pub(crate) fn mean_diameter(packing: &Packing) -> f64 {
     2.0 * packing.radii.iter().sum::<f64>() / packing.grains() as f64
 }
 
-/// Curves of rays, along given polarizations and of the modes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct RayCurves {
     /// Curves of all polarizations of all rays, in that order.
@@ -94,7 +93,6 @@ pub(crate) struct RayCurves {
     pub(crate) modes: Vec<DispersionCurve>,
 }
 
-/// The method, applied to one packing.
 pub(crate) struct Dispersion<'a> {
     pub(crate) backbone: &'a Backbone,
     /// Mean diameter, m.

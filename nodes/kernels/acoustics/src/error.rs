@@ -97,7 +97,6 @@ pub enum AcousticsError {
     Engine(#[from] grainlab_engine::EngineError),
 }
 
-/// Refuses a setting whose value is not `valid`.
 pub(crate) fn setting(
     name: &'static str,
     value: f64,
@@ -107,7 +106,6 @@ pub(crate) fn setting(
     if valid { Ok(()) } else { Err(AcousticsError::Setting { name, value, requirement }) }
 }
 
-/// The error that there is no `what` of this wave.
 pub(crate) fn no_signal(
     what: &'static str,
     direction: &Vec3,
@@ -118,7 +116,6 @@ pub(crate) fn no_signal(
     AcousticsError::NoSignal { what, direction, polarization, reason: reason.into() }
 }
 
-/// A direction as text.
 pub(crate) fn in_brackets(v: &[f64; 3]) -> String {
     format!("({:.3}, {:.3}, {:.3})", v[0], v[1], v[2])
 }

@@ -10,7 +10,6 @@ const SAMPLES_PER_PERIOD: f64 = 40.0;
 const MIN_PER_PERIOD: f64 = 6.0;
 const MAX_PER_PERIOD: f64 = 10_000.0;
 
-/// Maximum number of shots.
 const MAX_SHOTS: u32 = 1_000_000;
 
 /// Source, receivers and electronics.

@@ -3,11 +3,8 @@
 use crate::error::AcousticsError;
 use grainlab_core::notes::Note;
 
-/// Takes what was measured, and returns the first error of what was left out. A failure for want of a signal or a solution is left
-/// out with a note.
-///
-/// # Errors
-/// If everything failed, the first error; any other failure.
+/// Leaves out failures for want of a signal or a solution, with notes, and returns the first.
+/// Fails on any other failure, and where everything failed.
 pub(crate) fn keep<T>(
     results: Vec<Result<T, AcousticsError>>,
     notes: &mut Vec<Note>,

@@ -171,7 +171,6 @@ fn is_speed(measured: &MeasuredWave) -> bool {
     measured.wave.speed > 0.0
 }
 
-/// Warnings for speeds of large uncertainty.
 fn noisy(waves: &[MeasuredWave]) -> Vec<Note> {
     let of = |m: &MeasuredWave| {
         let relative = m.wave.stddev? / m.wave.speed;

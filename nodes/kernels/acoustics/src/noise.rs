@@ -4,7 +4,6 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
-/// A seed for each place.
 pub(crate) fn seed_at(seed: u64, place: &[u64]) -> u64 {
     place.iter().fold(seed, |state, index| Pcg64Mcg::seed_from_u64(state ^ index).next_u64())
 }

@@ -43,7 +43,6 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Checks axis and instrument.
     pub(crate) fn check(&self) -> Result<(), AcousticsError> {
         if let Some(axis) = self.axis {
             let value = axis.norm();

@@ -10,7 +10,6 @@ use grainlab_core::{Contact, Packing, Vec3};
 use grainlab_engine::EngineError;
 use lattice::Layers;
 
-/// Maximum number of grains.
 const MAX_GRAINS: usize = 20_000_000;
 
 /// Largest image number of the engine.

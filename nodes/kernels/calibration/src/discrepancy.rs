@@ -83,7 +83,6 @@ fn mean(errors: &Errors<'_>, without: Option<&str>, of: impl Fn(&[f64; 3]) -> f6
     kept.map(|all| all.iter().map(|(_, e)| of(e)).sum::<f64>() / all.len() as f64).sum::<f64>() / recipes
 }
 
-/// Means of the products of the errors.
 fn mean_square(errors: &Errors<'_>, without: Option<&str>) -> [[f64; 3]; 3] {
     std::array::from_fn(|i| std::array::from_fn(|j| mean(errors, without, |e| e[i] * e[j])))
 }

@@ -60,7 +60,6 @@ impl Reduced<'_> {
     }
 }
 
-/// What is known of the scatter.
 struct Known {
     levels: [Scatter; 2],
     by_state: ByState,
@@ -208,7 +207,6 @@ fn fitted(rows: &[&Reduced<'_>], known: &Known) -> Result<RelaxationCalibration,
     })
 }
 
-/// The difference between a packing and the laws.
 fn residual(network: &RelaxationCalibration, row: &Reduced<'_>) -> [f64; SCATTERED] {
     let CalibrationSample { k, z, eps, eps_stiffness, .. } = *row.sample;
     let (i, state) = (&row.invariants, &row.state);

@@ -147,7 +147,6 @@ impl CalibrationSample {
     }
 }
 
-/// Lowest and highest.
 pub(crate) fn bounds(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
 }

@@ -71,7 +71,6 @@ impl Cell {
     }
 }
 
-/// Bits of each coordinate along the curve.
 const CURVE_BITS: u32 = 10;
 
 /// Two zero bits after each of the lowest ten.

@@ -10,7 +10,6 @@ const OPEN: f64 = 0.25;
 /// ones, for which it is computed.
 const CHANCE: f64 = 1e-6;
 
-/// Names of the edge vectors of the cell.
 const EDGES: [&str; 3] = ["a", "b", "c"];
 
 /// The contacts through the planes parallel to two edge vectors of the cell.
@@ -32,7 +31,6 @@ impl Crossings {
     }
 }
 
-/// Returns the probability of at most `count` events where `mean` are expected, by the Poisson distribution.
 fn poisson_at_most(count: u32, mean: f64) -> f64 {
     let mut term = (-mean).exp();
     let mut sum = term;
@@ -88,7 +86,6 @@ impl Packing {
         std::array::from_fn(|k| between[k] as i64 + i64::from(c.image[k]))
     }
 
-    /// Returns the note on planes that far fewer contacts cross than the others.
     pub(crate) fn crossings_note(&self) -> Option<Note> {
         let open: Vec<(&str, Crossings)> =
             EDGES.into_iter().zip(self.crossings()).filter(|(_, c)| c.is_open()).collect();

@@ -40,7 +40,6 @@ enum Cause {
     Cell,
     /// Most contacts are too deep.
     Radii,
-    /// The packing does not tell.
     Unknown,
 }
 

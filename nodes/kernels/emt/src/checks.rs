@@ -195,7 +195,6 @@ fn outside_errors(conditions: &Conditions, calibration: &Calibration) -> Vec<Out
     outside
 }
 
-/// The modulus with the largest relative error, and this error.
 fn largest_error(observation: &Observation) -> Option<(Modulus, f64)> {
     let covariance = observation.covariance.as_ref()?;
     let relative = |(modulus, value): (Modulus, f64)| {

@@ -134,7 +134,6 @@ pub const UNKNOWN_SIZE_SPREAD: Measured = Measured { value: 0.173_2, stddev: 0.0
 /// The largest spread of the sizes of which one that is not known may be.
 pub(crate) const LARGEST_SPREAD: f64 = 0.3;
 
-/// Number of inputs that describe the state.
 pub(crate) const STATE_INPUTS: usize = 7;
 
 /// The inputs of a model besides the moduli.
@@ -199,7 +198,6 @@ impl Conditions {
         Some(moved)
     }
 
-    /// The first fault, if any.
     pub(crate) fn check(&self) -> Result<(), EmtError> {
         let finite = |quantity: &'static str, value: f64| {
             if value.is_finite() { Ok(()) } else { Err(EmtError::NotFinite { quantity, value }) }

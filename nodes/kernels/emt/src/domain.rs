@@ -140,7 +140,6 @@ pub(crate) fn by_quantity<T: Copy>(known: &[(InferredQuantity, T)]) -> [Option<T
     all
 }
 
-/// The notes of the quantities of a structure that are beyond the packings of the calibration.
 pub(crate) fn outside_fitted(
     fitted: &[Option<Fitted>; InferredQuantity::COUNT],
     structure: &Microstructure,

@@ -154,7 +154,6 @@ impl From<Note> for EmtError {
     }
 }
 
-/// The reason, for a result without an estimate.
 impl From<&EmtError> for Note {
     fn from(error: &EmtError) -> Self {
         match error {
@@ -189,7 +188,6 @@ impl EmtError {
         )
     }
 
-    /// `model` needs `modulus`, which is not known.
     pub(crate) fn missing(model: &'static str, modulus: Modulus) -> Self {
         EmtError::Missing { model, missing: modulus.name() }
     }

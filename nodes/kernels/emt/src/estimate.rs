@@ -65,7 +65,6 @@ pub struct Inversion {
     domain: Domain,
     /// Central intervals that the model states; `None`: those of normal errors.
     bounds: Option<[Option<[f64; 2]>; InferredQuantity::COUNT]>,
-    /// Limits of the prior of each quantity.
     limits: [[f64; 2]; InferredQuantity::COUNT],
 }
 

@@ -15,7 +15,6 @@ use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 /// Share of the largest derivative below which an unknown does not depend on a modulus.
 const NO_SHARE: f64 = 1e-9;
 
-/// See the text of the module.
 pub(crate) struct OfEstimate {
     unknowns: Vec<InferredQuantity>,
     moduli: Vec<Modulus>,
@@ -27,7 +26,6 @@ pub(crate) struct OfEstimate {
 }
 
 impl OfEstimate {
-    /// Likelihood of this estimate from these moduli.
     pub(crate) fn new(estimate: &Inversion, observation: &Observation) -> Result<Self, EmtError> {
         let without = |reason| EmtError::NoLikelihood { model: estimate.model, reason };
         if estimate.undetermined().next().is_some() {

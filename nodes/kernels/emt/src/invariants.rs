@@ -9,7 +9,6 @@
 use crate::moduli::{Moduli, Modulus};
 use nalgebra::SMatrix;
 
-/// Number of invariants.
 pub(crate) const INVARIANTS: usize = 5;
 
 /// The five invariants of a medium that is isotropic about e3, dimensionless but for the unit of the first two.

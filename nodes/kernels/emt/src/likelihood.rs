@@ -11,7 +11,6 @@ use nalgebra::{Cholesky, Const, Matrix2, SMatrix, SVector, Vector2};
 /// Unit of the moduli in every density, Pa: evidences of models are compared in the same unit.
 pub(crate) const UNIT: f64 = 1e6;
 
-/// Number of quantities that may follow.
 pub(crate) const FOLLOWING: usize = 2;
 
 /// A likelihood for one observation.

@@ -2,13 +2,11 @@
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Logarithm of √(2π).
 pub(crate) const LN_SQRT_TAU: f64 = 0.918_938_533_204_672_7;
 
 /// Half width, in standard deviations, of the central 95 % of a normal distribution.
 pub const HALF_WIDTH: f64 = 1.959_963_984_540_054;
 
-/// ln of the normal density of this mean and standard deviation.
 pub(crate) fn ln_density(x: f64, mean: f64, stddev: f64) -> f64 {
     -0.5 * ((x - mean) / stddev).powi(2) - stddev.ln() - LN_SQRT_TAU
 }

@@ -5,7 +5,6 @@ use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::f64::consts::TAU;
 
-/// A generator of random numbers.
 pub(crate) struct Random(Pcg64Mcg);
 
 impl Random {

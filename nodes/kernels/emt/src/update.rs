@@ -16,12 +16,10 @@ const SETTLED: f64 = 1e-12;
 
 type Vector = SVector<f64, { InferredQuantity::COUNT }>;
 
-/// Changes by the priors.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Updated {
     /// Change of the means.
     pub(crate) shift: Vector,
-    /// Covariance with the priors.
     pub(crate) covariance: MicrostructureCovariance,
     /// Derivative of the means with respect to those before.
     pub(crate) kept: MicrostructureCovariance,

@@ -93,7 +93,6 @@ impl Compute {
     }
 }
 
-/// Splits the pieces between two threads, and so on.
 fn fork_join<T: Send, R: Send>(mut pieces: Vec<T>, work: &(impl Fn(T) -> R + Sync)) -> Vec<R> {
     if pieces.len() < 2 {
         return pieces.into_iter().map(work).collect();
@@ -121,7 +120,6 @@ fn fork_join<T: Send, R: Send>(mut pieces: Vec<T>, work: &(impl Fn(T) -> R + Syn
     results
 }
 
-/// Runs `work` while the other threads of the pool poll for tasks without sleeping.
 fn keep_threads_spinning<R>(work: impl FnOnce() -> R) -> R {
     let leader = rayon::current_thread_index();
     let done = AtomicBool::new(false);

@@ -31,7 +31,6 @@ pub(crate) fn is_event_driven(phase: &Phase) -> bool {
     matches!(phase.kind, PhaseKind::Gas { method: GasMethod::EventDriven, .. })
 }
 
-/// Parameters of an event-driven phase.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EventDriven {
     /// Solver step, s.
@@ -62,8 +61,7 @@ impl EventDriven {
         Some(Self { step, speed })
     }
 
-    /// One control period at `rate` (1/s) from the state of `engine`: an engine in the next state, and the deformation
-    /// gradient.
+    /// Returns the engine after one control period at `rate` (1/s), and the deformation gradient over it.
     pub(crate) fn advance(
         self,
         engine: &dyn ParticleEngine,

@@ -3,7 +3,6 @@
 use grainlab_engine::{EngineSettings, TimeStep};
 use grainlab_scene::{Phase, PhaseKind, Scene};
 
-/// The settings of the engine in a phase.
 pub(crate) fn phase_settings(scene: &Scene, phase: &Phase) -> EngineSettings {
     EngineSettings {
         friction: phase.friction,

@@ -26,7 +26,6 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// The present state, as the path evaluates it.
     pub(crate) fn observation(&self, time: f64) -> Observation {
         Observation {
             time,

@@ -19,7 +19,6 @@ pub(crate) struct RunState {
     pub(crate) scene: u64,
     pub(crate) sequence: u64,
     pub(crate) packings: u64,
-    /// Index of the phase.
     pub(crate) phase: usize,
     /// Simulated time at which the phase began, s.
     pub(crate) began: f64,
@@ -33,7 +32,6 @@ pub(crate) struct RunState {
     pub(crate) phase_deformation: [[f64; 3]; 3],
     /// Integral over time of the largest component of the strain rate since the start of the phase.
     pub(crate) phase_strain: f64,
-    /// State that the deformation of the packing counts from.
     #[serde(with = "Origin")]
     pub(crate) strain_origin: StrainOrigin,
     /// The state is within a phase, not at the end of one.
@@ -112,10 +110,7 @@ impl RunState {
     }
 }
 
-/// Holds a packing against the scene that made it. A scene that starts from a packing takes grains and law from that.
-///
-/// # Errors
-/// Another number of grains, another material or law, or a friction of no phase.
+/// Accepts every packing where the scene starts from one: it takes grains and law from that packing.
 pub(crate) fn belongs(packing: &Packing, scene: &Scene) -> Result<(), ExperimentError> {
     if scene.start.is_some() {
         return Ok(());

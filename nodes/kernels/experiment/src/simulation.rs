@@ -384,7 +384,6 @@ impl Simulation {
         self.progress.within_phase = false;
     }
 
-    /// Progress of the phase.
     fn travelled(&self) -> Travelled {
         self.travelled_since(self.progress.path.began)
     }
@@ -405,7 +404,6 @@ impl Simulation {
         self.progress.path.phase_share(&self.scene, &self.progress.observation(self.engine.time()))
     }
 
-    /// Sets the engine to the present phase, after phase `ended`.
     fn begin_phase(&mut self, ended: usize, reference: bool) -> Result<(), ExperimentError> {
         // A failing phase does not return beyond its start, where a packing may have been published.
         self.rollback = None;

@@ -120,7 +120,6 @@ pub fn analyze(packing: &Packing, settings: &Settings) -> Result<Analysis, Micro
     Ok(Analysis { report, probe, unsolved })
 }
 
-/// The stiffness by the method of the settings, and the result of the probe.
 fn elasticity(
     view: &PackingView<'_>,
     settings: &Settings,

@@ -2,15 +2,12 @@
 
 use toml::Value;
 
-/// Keys of one table in order.
 pub(crate) type Entries = Vec<(&'static str, Entry)>;
 
-/// The value of a key.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Entry {
     /// Written as TOML.
     Value(String),
-    /// A table of entries.
     Table(Entries),
     /// An array of tables, each with its own heading.
     Tables(Vec<Entries>),
@@ -23,12 +20,10 @@ pub(crate) fn number(value: f64) -> Entry {
     Entry::Value(format!("{value:?}"))
 }
 
-/// An array of numbers.
 pub(crate) fn numbers(values: &[f64]) -> Entry {
     Entry::Value(format!("[{}]", values.iter().map(|v| format!("{v:?}")).collect::<Vec<_>>().join(", ")))
 }
 
-/// A text in quotes.
 pub(crate) fn text(value: &str) -> Entry {
     Entry::Value(Value::from(value).to_string())
 }

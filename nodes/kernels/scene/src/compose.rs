@@ -201,7 +201,6 @@ fn named(keys: &Table, place: &str, found: &mut Vec<String>) {
     }
 }
 
-/// True if a table has a key of `[start]`.
 fn has_key(table: &Table, key: &str) -> bool {
     table.get("start").and_then(Value::as_table).is_some_and(|start| start.contains_key(key))
 }

@@ -17,7 +17,6 @@ pub(crate) fn read(r: &mut Reader<'_>, default: &ContactLaw) -> ContactLaw {
     ContactLaw { springs, rolling: rolling(r, default.rolling) }
 }
 
-/// The resistance to rolling, where the scene or the packing that it starts from has any.
 fn rolling(r: &mut Reader<'_>, default: Option<RollingResistance>) -> Option<RollingResistance> {
     let keys = &*keys::ROLLING_KEYS;
     if default.is_none() && !keys.iter().any(|key| r.has(key)) {

@@ -89,7 +89,6 @@ fn never(condition: &Condition, phase: &Phase) -> Option<String> {
     }
 }
 
-/// A solid fraction that hard spheres do not reach.
 fn too_dense(condition: &Condition, phase: &Phase, sizes: &Sizes) -> Option<String> {
     let PhaseKind::Gas { method: GasMethod::EventDriven, .. } = phase.kind else { return None };
     let &Condition::AtLeast(Measure::SolidFraction, wanted) = condition else { return None };
@@ -99,7 +98,6 @@ fn too_dense(condition: &Condition, phase: &Phase, sizes: &Sizes) -> Option<Stri
     })
 }
 
-/// Conditions that are met too late, where the time is known.
 fn too_late(phase: &Phase) -> Option<String> {
     let Conditions { all, hold, timeout } = &phase.until;
     let times = all.iter().filter_map(|c| Some((c, least_time(c, phase)?)));
@@ -134,7 +132,6 @@ pub(crate) fn solid_fraction_after(phase: &Phase, before: f64) -> f64 {
     all.iter().filter_map(bound).fold(deformed, f64::max)
 }
 
-/// An imposed compression beyond a full cell.
 fn overfull(phase: &Phase, before: f64) -> Option<String> {
     let rate = phase.imposed_volumetric_rate().filter(|rate| *rate < 0.0 && before > 0.0)?;
     let times = phase.until.all.iter().filter_map(|c| Some((c, least_time(c, phase)?)));

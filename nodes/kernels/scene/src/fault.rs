@@ -19,12 +19,10 @@ pub struct SceneError {
 }
 
 impl SceneError {
-    /// An error unless there are no faults.
     pub(crate) fn of(faults: Vec<Fault>) -> Result<(), Self> {
         if faults.is_empty() { Ok(()) } else { Err(Self { faults }) }
     }
 
-    /// A single fault.
     pub(crate) fn one(place: &str, message: impl Into<String>) -> Self {
         Self { faults: vec![Fault { place: place.into(), message: message.into() }] }
     }

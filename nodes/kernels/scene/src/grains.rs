@@ -10,7 +10,6 @@ use toml::{Table, Value};
 /// Largest diameter over smallest: the grid of the neighbour search is as wide as the largest diameter.
 const LARGEST_RATIO: f64 = 20.0;
 
-/// Reads `[grains]`: number and sizes.
 pub(crate) fn read(r: &mut Reader<'_>) -> (u32, Sizes) {
     let listed = r.get(&keys::DIAMETER).and_then(counts);
     let unwhole = r.get(&keys::DIAMETER).and_then(unwhole).map(|count| {
@@ -108,7 +107,6 @@ fn mixture(entries: &[Value]) -> Option<Sizes> {
     Some(Sizes::Mixture(species.collect()))
 }
 
-/// Sizes as text.
 fn entry(sizes: &Sizes) -> Entry {
     let table = |pairs: [(&'static str, f64); 2]| -> Entries {
         pairs.map(|(name, value)| (name, number(value))).to_vec()

@@ -64,16 +64,11 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// All finite numbers.
     pub(crate) const FINITE: Self =
         Self { low: Bound::Excluded(f64::NEG_INFINITY), high: Bound::Excluded(f64::INFINITY) };
-    /// Finite numbers above 0.
     pub(crate) const POSITIVE: Self = Self { low: Bound::Excluded(0.0), ..Self::FINITE };
-    /// Finite numbers below 0.
     pub(crate) const NEGATIVE: Self = Self { high: Bound::Excluded(0.0), ..Self::FINITE };
-    /// Finite numbers from 0.
     pub(crate) const FROM_ZERO: Self = Self { low: Bound::Included(0.0), ..Self::FINITE };
-    /// Numbers from 0, infinity too.
     pub(crate) const FROM_ZERO_TO_INFINITY: Self = Self { high: Bound::Unbounded, ..Self::FROM_ZERO };
 
     /// Numbers from `low` to `high`, both included.

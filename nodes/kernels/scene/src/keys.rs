@@ -136,7 +136,6 @@ pub static KEYS: LazyLock<Vec<&'static Key>> = LazyLock::new(|| {
     before.iter().copied().chain(laws).chain(after.iter().copied()).collect()
 });
 
-/// Keys of the parameters of each law of springs, by its name.
 pub(crate) static LAW_KEYS: LazyLock<Vec<(&'static str, Vec<Key>)>> = LazyLock::new(|| {
     let of = |springs: &SpringLaw| {
         let keys = springs.parameter_list().iter().map(|p| law_key(p, &format!("law {}", springs.name())));
@@ -145,7 +144,6 @@ pub(crate) static LAW_KEYS: LazyLock<Vec<(&'static str, Vec<Key>)>> = LazyLock::
     SpringLaw::EXAMPLES.iter().map(of).collect()
 });
 
-/// Keys of the resistance to rolling.
 pub(crate) static ROLLING_KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
     let of = |p: &LawParameter| {
         let key = law_key(p, "any law");
@@ -155,7 +153,7 @@ pub(crate) static ROLLING_KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
     RollingResistance::PARAMETERS.iter().map(of).collect()
 });
 
-/// The key of a parameter of a contact law. Its text is `'static`, as that of every key.
+/// Its text is `'static`, as that of every key.
 fn law_key(p: &LawParameter, whose: &str) -> Key {
     let path = String::leak(format!("contact.{}", p.key));
     let range = Interval { low: p.range.0, high: p.range.1 };

@@ -18,7 +18,6 @@ fn is_start(word: &str, known: &str) -> bool {
     word.len().min(known.len()) >= 3 && (known.starts_with(word) || word.starts_with(known))
 }
 
-/// Formatted for a message.
 pub(crate) fn hint(meant: &str) -> String {
     format!(" (did you mean {meant}?)")
 }

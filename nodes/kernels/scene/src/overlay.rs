@@ -65,7 +65,6 @@ fn is_component(place: &str) -> bool {
     place.rsplit('.').nth(1) == Some("control")
 }
 
-/// Keeps the keys of a change for which `has` is true.
 fn retain(change: &mut Table, place: &str, has: &mut dyn FnMut(&str, &Value) -> bool) {
     change.retain(|key, value| match value {
         Value::Table(inner) if !place.ends_with("control.") => {

@@ -126,9 +126,7 @@ fn measured(measure: Measure, seen: &Observation, elapsed: f64) -> f64 {
     }
 }
 
-/// A servoed stress component and its target.
 struct TargetError {
-    /// Index of the component.
     component: usize,
     /// Stress target, Pa.
     target: f64,

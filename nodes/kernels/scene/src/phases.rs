@@ -26,11 +26,9 @@ const SPIN_CROSSINGS: f64 = 1e3;
 
 /// Values that phases take from the scene by default.
 pub(crate) struct Inherited<'a> {
-    /// Sizes of the grains.
     pub(crate) sizes: &'a Sizes,
-    /// Friction coefficient of the scene.
     pub(crate) friction: Option<f64>,
-    /// True if a phase used it.
+    /// True if a phase used the friction.
     pub(crate) taken: bool,
     /// Drag on spins of relaxing and servoed phases, 1/s.
     pub(crate) spin_drag: f64,
@@ -72,7 +70,6 @@ pub(crate) fn read(r: &mut Reader<'_>, inherited: &mut Inherited<'_>, begins_wit
     phases
 }
 
-/// Reads the array of phase tables under `key`.
 fn list(
     r: &mut Reader<'_>,
     key: &'static Key,

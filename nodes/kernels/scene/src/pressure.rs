@@ -9,7 +9,6 @@ use toml::{Table, Value};
 /// Stress over the held one up to which a bound means "none", as in a relaxation, and is not part of the loading.
 const NEGLIGIBLE: f64 = 0.01;
 
-/// The stress targets of normal components.
 const TARGETS: [&str; 3] = [".control.xx.stress", ".control.yy.stress", ".control.zz.stress"];
 
 /// Called with a phase, a key in it, its stress, and the value of the key.

@@ -28,7 +28,6 @@ impl<'a> Reader<'a> {
         self.faults.push(Fault { place, message: message.into() });
     }
 
-    /// True if no fault was found so far.
     pub(crate) fn is_sound(&self) -> bool {
         self.faults.is_empty()
     }
@@ -142,7 +141,6 @@ impl<'a> Reader<'a> {
         self.read(key, default.map(str::to_owned), read, entry).unwrap_or_default()
     }
 
-    /// One of the choices of the key.
     pub(crate) fn choice<T: Copy>(
         &mut self,
         key: &'static Key,
@@ -238,13 +236,11 @@ fn needs(place: &str) -> Option<String> {
     Some(format!("is not taken here:{needed} {}", key.meaning))
 }
 
-/// Places in which a key of this name exists.
 fn elsewhere(name: &str) -> String {
     let found = crate::keys::KEYS.iter().find(|k| k.name() == name);
     found.map_or_else(String::new, |k| hint(&k.path.replacen("phase.", "phase.NAME.", 1)))
 }
 
-/// A number that the key takes.
 pub(crate) fn number_of(key: &Key, value: &Value) -> Option<f64> {
     as_number(value).filter(|v| match key.domain {
         Domain::Number(range) => range.contains(*v),

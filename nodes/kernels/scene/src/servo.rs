@@ -80,7 +80,6 @@ fn law(r: &mut Reader<'_>) -> ServoLaw {
     }
 }
 
-/// Control of one component.
 fn component(r: &mut Reader<'_>, name: &'static str) -> ComponentControl {
     let single = |t: &Table, k: &str| (t.len() == 1).then(|| t.get(k).and_then(as_number)).flatten();
     let parsed = match r.get_named(name) {

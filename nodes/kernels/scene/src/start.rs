@@ -54,7 +54,6 @@ pub(crate) fn read(r: &mut Reader<'_>) -> Option<Start> {
     })
 }
 
-/// The names of the columns of contact forces.
 fn columns(r: &mut Reader<'_>) -> Vec<String> {
     let key = &keys::START_CONTACT_COLUMNS;
     let Some(value) = r.get(key) else { return Vec::new() };
@@ -80,7 +79,6 @@ pub(crate) fn grains(r: &mut Reader<'_>, packing: &Packing) -> (u32, Sizes) {
     (u32::try_from(packing.grains()).unwrap_or(u32::MAX), Sizes::OfPacking { mean })
 }
 
-/// Faults of a material that differs from that of the packing.
 pub(crate) fn differing(own: &Material, packing: &Packing) -> Vec<Fault> {
     let of = &packing.material;
     let pairs = [

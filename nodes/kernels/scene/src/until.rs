@@ -49,7 +49,6 @@ pub(crate) fn read(r: &mut Reader<'_>, servoed: bool) -> Conditions {
     until.unwrap_or(Conditions { all: Vec::new(), hold: 0.0, timeout: 1.0 })
 }
 
-/// A table of component = value.
 fn by_component(
     r: &mut Reader<'_>,
     key: &'static Key,

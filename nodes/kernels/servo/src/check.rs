@@ -5,7 +5,6 @@ use crate::input::ServoInput;
 use crate::stability::critical_gain;
 use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 
-/// The first fault of an input.
 pub(crate) fn check(input: &ServoInput) -> Result<(), ServoError> {
     finite("stress", &input.stress.voigt())?;
     finite("rate", &input.rate)?;

@@ -3,7 +3,6 @@
 use crate::Failure;
 use std::fs;
 
-/// Largest number of heaps.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 const HEAPS: libc::c_int = 2;
 

@@ -102,7 +102,6 @@ impl Admission {
         }
     }
 
-    /// True if samples of this participant are accepted.
     pub(crate) fn admits(&self, participant: &Participant) -> bool {
         if self.identity.scope == Scope::Everyone || *participant == self.own {
             return true;
@@ -147,7 +146,6 @@ impl Admission {
         self.strangers.values().cloned().collect()
     }
 
-    /// The known facts of a participant, for messages to users.
     pub(crate) fn describe(&self, participant: &Participant) -> Stranger {
         let process = self.processes.get(participant).filter(|p| p.pid != 0);
         let process = process.map(|p| format!("pid {} ({})", p.pid, p.name));

@@ -48,7 +48,6 @@ pub fn tolerate_full(published: Result<i64, BusError>) -> Result<(), BusError> {
     }
 }
 
-/// An entity of DDS, a thread or a poll that could not be created.
 pub(crate) fn create_error(what: &str, error: &dyn std::error::Error) -> BusError {
     BusError::Network { what: format!("create {what}"), reason: error.to_string() }
 }

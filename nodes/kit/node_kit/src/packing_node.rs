@@ -237,6 +237,7 @@ impl<M: Measure> Node for PackingNode<M> {
             .with(activity, step_or_none(step))
             .with(format!("{activity}_s"), if self.worker.is_busy() { self.under_way } else { 0.0 })
             .with("waiting", self.packing.waiting())
+            .with_measuring(self.worker.is_busy() || self.packing.waiting() > 0)
     }
 
     /// Ends at once: the next process of this node measures the present packing again, with the same bytes.

@@ -15,7 +15,6 @@ pub struct UdpEntry {
     ip: Ipv4Addr,
     /// Port that it is bound to.
     pub port: u16,
-    /// Id of the user.
     user: u32,
     /// Inode, which is in the links of its owner; see [`sockets_of`].
     pub inode: u64,

@@ -8,7 +8,6 @@
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Prefix of the names of RustDDS's threads.
 const DDS_THREAD: &str = "RustDDS";
 
 /// Number of RustDDS's threads per participant: discovery and the event loop.
@@ -16,7 +15,6 @@ const THREADS: usize = 2;
 
 static DDS_THREAD_PANICKED: AtomicBool = AtomicBool::new(false);
 
-/// Number of open participants of this process.
 static PARTICIPANTS: AtomicUsize = AtomicUsize::new(0);
 
 /// Counts one participant while it exists.

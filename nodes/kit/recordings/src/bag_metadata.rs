@@ -17,7 +17,6 @@ pub(crate) struct TopicCount {
     pub(crate) messages: u64,
 }
 
-/// The content of `metadata.yaml`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BagMetadata {
     pub(crate) files: Vec<FileCount>,
@@ -32,7 +31,6 @@ pub(crate) struct BagMetadata {
 }
 
 impl BagMetadata {
-    /// The metadata from the files of a recording.
     pub(crate) fn of(recording: &Recording) -> Self {
         let compressed = recording.compressed;
         let mut metadata = Self { files: recording.parts(), compressed, ..Self::default() };

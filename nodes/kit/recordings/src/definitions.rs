@@ -8,7 +8,6 @@ use grainlab_msgs::{INTERFACES, TypeInfo};
 
 use grainlab_console::input;
 
-/// Between the definitions of a schema text.
 const SEPARATOR: &str = "================================================================================";
 
 /// The types of this program's nodes, then those in folders that contain `package/msg/Type.msg`, then the common interfaces of ROS 2.
@@ -66,7 +65,6 @@ impl Definitions {
         interface(&format!("{type_name}.srv"))
     }
 
-    /// The file of the type in the folders.
     fn file(&self, type_name: &str) -> Option<PathBuf> {
         // A type name from the network is not a path: it has three parts of letters, digits and underscores.
         let plain =
@@ -76,7 +74,6 @@ impl Definitions {
         files.filter(|_| is_plain).find(|path| path.exists())
     }
 
-    /// The text of the type's own file.
     fn read(&self, type_name: &str) -> Result<Option<String>, String> {
         let Some(path) = self.file(type_name) else {
             return Ok(interface(&format!("{type_name}.msg")).map(str::to_owned));
@@ -85,7 +82,6 @@ impl Definitions {
         input::text(&path, input::SETTINGS).map(Some).map_err(unread)
     }
 
-    /// The text with the definitions of all types that it uses.
     fn with_dependencies(&self, root: String, type_name: &str) -> Result<String, String> {
         let mut text = root.clone();
         let mut done = BTreeSet::from([type_name.to_owned()]);

@@ -150,7 +150,6 @@ pub fn host_name() -> String {
     if name.trim().is_empty() { "unknown".to_owned() } else { name.trim().to_owned() }
 }
 
-/// First word of the text of a lock.
 const HOLDER: &str = "process ";
 
 fn holder(host: &str) -> String {

@@ -13,8 +13,7 @@ pub const LEDGER_KEY: &str = "ledger";
 /// covers its earlier files, too.
 pub const SESSION_KEY: &str = "session";
 
-/// Key in the metadata record [`METADATA_RECORD`] of a file that was completed after its recorder was killed: the parts that could not be
-/// read, as a JSON list of warnings.
+/// Key in [`METADATA_RECORD`] of a recovered file: the parts that could not be read, as a JSON list of warnings.
 pub(crate) const RECOVERED_KEY: &str = "recovered_without";
 
 /// Key in the metadata record [`METADATA_RECORD`] of a file whose recorder had to end, as on a full disk: the reason.

@@ -43,7 +43,6 @@ impl SeveralRuns {
 #[error("{what}")]
 pub struct RunSign {
     what: String,
-    /// Advice how to get a recording of one run.
     way_out: &'static str,
 }
 
@@ -165,8 +164,7 @@ impl OneRun {
     }
 }
 
-/// A fingerprint of where the grains are. What a phase sets is left out: it differs at the end of one and at the beginning of the
-/// next.
+/// Fingerprint of where the grains are, without what a phase sets: that differs between its end and the next beginning.
 pub(crate) fn state(packing: &Packing) -> u64 {
     let number = |hasher: &mut DefaultHasher, value: f64| value.to_bits().hash(hasher);
     fingerprint(|hasher| {

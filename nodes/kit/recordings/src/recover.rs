@@ -142,7 +142,6 @@ fn file(path: PathBuf) -> Result<RecoveredFile, Failure> {
     })
 }
 
-/// Compares the messages of both.
 fn compare(old: &Recording, new: &Recording) -> Result<(), String> {
     let all = crate::reader::Selection::default();
     let (mut a, mut b) =
@@ -157,8 +156,7 @@ fn compare(old: &Recording, new: &Recording) -> Result<(), String> {
     Ok(())
 }
 
-/// Keeps the original under another name: by a second link, so that a recording exists at any time. On a file
-/// system without links it is renamed.
+/// Keeps the original under another name: by a second link, so that a recording always exists, or else renamed.
 fn keep(path: &Path) -> io::Result<PathBuf> {
     for n in 0u32.. {
         let suffix = if n == 0 { ".orig".to_owned() } else { format!(".orig{n}") };

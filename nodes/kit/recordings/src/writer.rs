@@ -93,7 +93,6 @@ pub struct RunWriter {
     name: String,
     /// Number of the file being written.
     number: u64,
-    /// Path of the file being written.
     file: PathBuf,
     options: WriterOptions,
     /// `None` only after the end.
@@ -374,7 +373,6 @@ impl RunWriter {
         })
     }
 
-    /// Completes the file being written, with the ledger so far.
     fn close_part(&mut self, finished: &str) -> Result<(), Failure> {
         let Some(part) = self.part.take() else {
             return Err(self.already_ended());
@@ -400,7 +398,6 @@ impl RunWriter {
         Ok(())
     }
 
-    /// Begins the next file if this one is old or large enough.
     fn split_if_due(&mut self, now: Instant) -> Result<(), Failure> {
         let Some(part) = self.part.as_ref().filter(|part| part.has_messages()) else { return Ok(()) };
         let old = now.saturating_duration_since(part.began()) >= self.options.split_after;
@@ -418,7 +415,6 @@ impl RunWriter {
         split.inspect_err(|error| self.ended = Some(error.to_string()))
     }
 
-    /// Begins a file with all topics.
     fn next_part(&self, file: PathBuf, now: Instant) -> Result<Part, Failure> {
         let mut next = Part::create(file.clone(), &self.options, now)?;
         let specs = self.topics.iter().filter_map(|name| self.bag.topics.get(name)).map(|topic| &topic.spec);
@@ -450,8 +446,7 @@ impl RunWriter {
         Err(error)
     }
 
-    /// Runs `action`, which adds at most `bytes` and a chunk to the file being written, unless the recording has ended; a failure
-    /// ends it.
+    /// Runs `action`, which adds at most `bytes` and a chunk, unless the recording has ended; a failure ends it.
     fn with<T>(
         &mut self,
         what: &'static str,
@@ -474,7 +469,6 @@ impl RunWriter {
     }
 }
 
-/// The reason of a failed write, and what to do.
 fn described(error: McapError) -> String {
     let is_full = matches!(&error, McapError::Io(e) if matches!(e.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded));
     let advice = if is_full { ": free space and run again" } else { "" };

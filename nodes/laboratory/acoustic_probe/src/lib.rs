@@ -13,6 +13,6 @@ mod parameters;
 mod settings;
 
 pub use measure::{MeasureError, Measured, measure, messages};
-pub use node::{AcousticProbe, DECLINED_STEP, MEASURING, Probe};
+pub use node::{AcousticProbe, Probe};
 pub use parameters::{methods_with, parameters};
 pub use settings::{Settings, SettingsError};

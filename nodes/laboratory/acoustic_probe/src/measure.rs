@@ -2,6 +2,7 @@
 
 use crate::Settings;
 use grainlab_acoustics::{AcousticsError, Measurement, Trace};
+use grainlab_core::notes::Note;
 use grainlab_core::results::NoStiffness;
 use grainlab_core::{Packing, Vec3, stress};
 use grainlab_msgs::boundary::{BoundaryError, WaveSpeedsReading, vector_message, wave_speeds_message};
@@ -15,10 +16,12 @@ pub struct Measured {
     pub wave_speeds: msg::WaveSpeeds,
     /// The recorded traces, one message per wave; empty for dispersion.
     pub waveforms: Vec<msg::Waveform>,
+    /// Why there are no speeds.
+    pub declined: Option<MeasureError>,
 }
 
 /// Why a packing has no wave speeds.
-#[derive(Debug, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeasureError {
     /// The message cannot be decoded.
     #[error("a packing cannot be decoded: {0}")]
@@ -52,58 +55,78 @@ pub enum MeasureError {
     },
 }
 
-impl MeasureError {
-    /// Step of a packing that was read and has no wave speeds.
-    pub fn step(&self) -> Option<u64> {
-        match self {
-            Self::Undecodable(_) | Self::Refused(_) => None,
-            Self::NoStiffness { step, .. } | Self::Acoustics { step, .. } | Self::Result { step, .. } => {
-                Some(*step)
-            }
-        }
-    }
-}
-
-/// Measures one packing. Header and step are copied. The result depends only on the two arguments.
+/// Measures one packing; a packing that carries no wave gets a message without speeds. Header and step are copied. The result depends
+/// only on the two arguments.
 pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, MeasureError> {
     let packing = Packing::try_from(message).map_err(MeasureError::Refused)?;
     let step = packing.step;
-    let found = grainlab_acoustics::measure(&packing, &settings.0).map_err(|e| match e {
-        AcousticsError::NoStiffness(reason) => MeasureError::NoStiffness { step, reason },
-        reason => MeasureError::Acoustics { step, reason },
-    })?;
-    messages(&message.header, &packing, &found).map_err(|reason| MeasureError::Result { step, reason })
+    let why = match grainlab_acoustics::measure(&packing, &settings.0) {
+        Ok(found) => {
+            let messages = messages(&message.header, &packing, &found);
+            return messages.map_err(|reason| MeasureError::Result { step, reason });
+        }
+        Err(AcousticsError::NoStiffness(reason)) => MeasureError::NoStiffness { step, reason },
+        Err(reason) => MeasureError::Acoustics { step, reason },
+    };
+    declined(&message.header, &packing, why)
 }
 
-/// The messages for a measured packing; `header` is that of the message of the packing.
+/// Returns the messages for a measured packing; `header` is that of the message of the packing.
 pub fn messages(header: &Header, packing: &Packing, found: &Measurement) -> Result<Measured, BoundaryError> {
-    let stress = stress::stress(packing).tensor;
     let reading = WaveSpeedsReading {
+        density: found.density,
+        density_stddev: Some(found.density_stddev).filter(|s| *s > 0.0),
+        axis: found.axis,
+        stress_ratio: stress::stress(packing).tensor.axial_ratio(&found.axis.unwrap_or_else(Vec3::z)),
+        smooth: found.smooth,
+        speeds: found.waves.clone(),
+        notes: found.notes.clone(),
+        ..reading(header, packing)
+    };
+    let wave_speeds = wave_speeds_message(header.clone(), &reading)?;
+    let traces = found.traces.iter().map(|trace| waveform(header, packing.step, trace));
+    Ok(Measured { wave_speeds, waveforms: traces.collect::<Result<_, _>>()?, declined: None })
+}
+
+/// Returns the message for a packing without wave speeds, which says why.
+fn declined(header: &Header, packing: &Packing, why: MeasureError) -> Result<Measured, MeasureError> {
+    let note = match &why {
+        MeasureError::NoStiffness { reason, .. } => Note::from(reason),
+        other => Note::no_answer(other.to_string()),
+    };
+    let reading = WaveSpeedsReading { notes: vec![note], ..reading(header, packing) };
+    match wave_speeds_message(header.clone(), &reading) {
+        Ok(wave_speeds) => Ok(Measured { wave_speeds, waveforms: Vec::new(), declined: Some(why) }),
+        Err(_) => Err(why),
+    }
+}
+
+/// Returns the state of a packing, without speeds.
+fn reading(header: &Header, packing: &Packing) -> WaveSpeedsReading {
+    let stress = stress::stress(packing).tensor;
+    WaveSpeedsReading {
         stamp: header.stamp,
         name: String::new(),
         source_step: Some(packing.step).filter(|step| *step > 0),
         grains: u32::try_from(packing.grains()).ok(),
-        density: found.density,
-        density_stddev: Some(found.density_stddev).filter(|s| *s > 0.0),
+        density: packing.material.density * packing.solid_fraction(),
+        density_stddev: None,
         pressure: stress.mean(),
         pressure_stddev: 0.0,
         solid_fraction: Some(packing.solid_fraction()),
-        stress_ratio: stress.axial_ratio(&found.axis.unwrap_or_else(Vec3::z)),
+        stress_ratio: stress.axial_ratio(&Vec3::z()),
         stress_ratio_stddev: 0.0,
         size_spread: Some(packing.size_spread()),
-        axis: found.axis,
+        axis: None,
         grain_shear_modulus: packing.material.shear_modulus,
         grain_shear_modulus_stddev: 0.0,
         grain_poisson_ratio: packing.material.poisson_ratio,
         grain_poisson_ratio_stddev: 0.0,
         contact_law: Some(packing.law),
-        smooth: found.smooth,
-        speeds: found.waves.clone(),
-        notes: found.notes.clone(),
-    };
-    let wave_speeds = wave_speeds_message(header.clone(), &reading)?;
-    let traces = found.traces.iter().map(|trace| waveform(header, packing.step, trace));
-    Ok(Measured { wave_speeds, waveforms: traces.collect::<Result<_, _>>()? })
+        smooth: false,
+        speeds: Vec::new(),
+        notes: Vec::new(),
+    }
 }
 
 fn waveform(header: &Header, source_step: u64, trace: &Trace) -> Result<msg::Waveform, BoundaryError> {

@@ -7,12 +7,6 @@ use grainlab_node_kit::{
     Bus, BusError, Declined, Health, Measure, PackingNode, Publisher, SampleId, Tally, Words, step_or_none,
 };
 
-/// Key of the diagnostics with the step of the last packing without wave speeds.
-pub const DECLINED_STEP: &str = "declined_step";
-
-/// Key of the diagnostics with the step of the packing being measured.
-pub const MEASURING: &str = "measuring";
-
 /// The probe: measures every packing, one after the other, on a worker thread.
 pub type AcousticProbe = PackingNode<Probe>;
 
@@ -23,7 +17,6 @@ pub struct Probe {
     waveform: Publisher<Waveform>,
     speeds: u64,
     warnings: u64,
-    declined_step: Option<u64>,
 }
 
 impl Measure for Probe {
@@ -31,7 +24,8 @@ impl Measure for Probe {
     type Found = Measured;
     type Error = MeasureError;
 
-    const WORDS: Words = Words { thread: "measurement", activity: MEASURING, seconds: "last_measurement_s" };
+    const WORDS: Words =
+        Words { thread: "measurement", activity: "measuring", seconds: "last_measurement_s" };
 
     fn advertise(bus: &mut dyn Bus) -> Result<Self, BusError> {
         Ok(Self {
@@ -39,7 +33,6 @@ impl Measure for Probe {
             waveform: Publisher::advertise(bus, &topics::WAVEFORM)?,
             speeds: 0,
             warnings: 0,
-            declined_step: None,
         })
     }
 
@@ -59,6 +52,14 @@ impl Measure for Probe {
             self.waveform.publish_about(bus, waveform, about)?;
         }
         self.wave_speeds.publish_about(bus, &found.wave_speeds, about)?;
+        if let Some(why) = &found.declined {
+            match self.decline(why) {
+                Declined::NoNetwork => tally.count_without_network(why.to_string()),
+                Declined::Refused | Declined::Failed => tally.count_failed(why.to_string()),
+            }
+            log::warn!("{why}");
+            return Ok(());
+        }
         let WaveSpeeds { source_step: step, speeds, warnings, density, .. } = &found.wave_speeds;
         tally.count(*step);
         self.speeds += speeds.len() as u64;
@@ -71,7 +72,6 @@ impl Measure for Probe {
     }
 
     fn decline(&mut self, error: &MeasureError) -> Declined {
-        self.declined_step = error.step().or(self.declined_step);
         match error {
             MeasureError::Undecodable(_) | MeasureError::Refused(_) => Declined::Refused,
             MeasureError::NoStiffness { .. } => Declined::NoNetwork,
@@ -87,6 +87,5 @@ impl Measure for Probe {
             .with("without_network", tally.without_network)
             .with("failed", tally.failed)
             .with("last_step", step_or_none(tally.last_step))
-            .with(DECLINED_STEP, step_or_none(self.declined_step))
     }
 }

@@ -7,16 +7,17 @@
 //! - `publication`: all other messages; `send_queue`: messages in order, none lost if a reader is behind
 //! - `samples`: some of the requests, for viewers; `messages`: messages of the run
 //! - `duplicate_simulators`: other simulators on the same topics
-//! - `inversions`: the results of the last packing that the end waits for
+//! - `results`: data and answers as they arrive; `run_end`: what the end of the run waits for
 
 mod duplicate_simulators;
-mod inversions;
 mod lockstep;
 mod messages;
 mod node;
 mod partner;
 mod publication;
+mod results;
 mod run;
+mod run_end;
 mod samples;
 mod send_queue;
 mod servo;
@@ -25,4 +26,5 @@ mod speculative_step;
 
 pub use node::DemSimulator;
 pub use publication::SAVED_WITHIN;
-pub use settings::{Settings, parameters};
+pub use run_end::RecordedSpeeds;
+pub use settings::{Finish, Settings, parameters};

@@ -6,7 +6,7 @@ use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::geometry_msgs::{Quaternion, Transform, TransformStamped};
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::tf2_msgs::TFMessage;
-use grainlab_msgs::{msg, stamp};
+use grainlab_msgs::{Exit, msg, stamp};
 
 /// The number of a phase in messages, from 1, by its index in the scene.
 fn number(index: usize) -> u32 {
@@ -28,7 +28,21 @@ pub(crate) struct Packings {
     pub(crate) count: u32,
 }
 
-pub(crate) fn run_state(run: &Simulation, state: u8, packings: Packings, message: &str) -> msg::RunState {
+/// What a reader is told about the state of the run.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Remark {
+    pub(crate) text: String,
+    /// Exit of the run by the results of its last packing.
+    pub(crate) exit: Option<Exit>,
+}
+
+impl From<String> for Remark {
+    fn from(text: String) -> Self {
+        Self { text, exit: None }
+    }
+}
+
+pub(crate) fn run_state(run: &Simulation, state: u8, packings: Packings, remark: &Remark) -> msg::RunState {
     let phases = &run.scene().phases;
     let phase = run.path().phase.min(phases.len().saturating_sub(1));
     msg::RunState {
@@ -40,7 +54,8 @@ pub(crate) fn run_state(run: &Simulation, state: u8, packings: Packings, message
         step: run.engine().steps(),
         last_packing_step: packings.last_step,
         packings: packings.count,
-        message: message.to_owned(),
+        message: remark.text.clone(),
+        exit_code: remark.exit.iter().map(|exit| exit.code()).collect(),
     }
 }
 

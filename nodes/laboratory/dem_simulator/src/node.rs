@@ -5,19 +5,20 @@ mod exchange;
 mod start;
 
 use crate::duplicate_simulators::DuplicateSimulators;
-use crate::inversions::Inversions;
-use crate::messages::{self, Packings};
+use crate::messages::{self, Packings, Remark};
 use crate::publication::{HOLD, Publication, flush_last_messages};
+use crate::results::Results;
 use crate::run::Run;
+use crate::run_end::{RunEnd, Verdict};
 use crate::servo::Servo;
-use crate::settings::Settings;
+use crate::settings::{Finish, Settings};
 use grainlab_engine::{EngineError, EngineFactory};
 use grainlab_experiment::{ExperimentError, Simulation};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::msg::{self, RunState};
 use grainlab_msgs::{PhaseReport, topics};
 use grainlab_node_kit::{
-    BulkPublisher, Bus, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription,
+    BulkPublisher, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription,
 };
 use grainlab_scene::Scene;
 use std::sync::Arc;
@@ -43,9 +44,11 @@ pub struct DemSimulator {
     servo: Servo,
     publication: Publication,
     run_states: Subscription<RunState>,
-    inversions: Inversions,
-    /// Time of the end of the loading path.
-    done: Option<Duration>,
+    /// `None` if the process ends with the loading path.
+    results: Option<Results>,
+    /// What readers of `run_state` are told after the loading path.
+    remark: Remark,
+    verdict: Option<Verdict>,
     stage: Stage,
     duplicates: DuplicateSimulators,
     /// The packing that the run resumes from, while it is still to be published.
@@ -107,8 +110,10 @@ impl DemSimulator {
         // Another simulator repeats its state every second; a reliable reader of our own topic might fill our own
         // window.
         let run_states = Subscription::subscribe(bus, &topics::RUN_STATE, Demand::best_effort(16))?;
-        let awaited = if settings.exit_when_finished { settings.until_inverted.as_slice() } else { &[] };
-        let inversions = Inversions::new(bus, awaited)?;
+        let results = match settings.finish {
+            Finish::AtOnce => None,
+            Finish::Never | Finish::Inverted => Some(results_of(bus, run.scene(), &settings)?),
+        };
         publication.frames(bus)?;
         let own_stress = bus.published().first().map(|p| p.writer).unwrap_or_default();
         let now = bus.now();
@@ -117,8 +122,9 @@ impl DemSimulator {
             servo: Servo::new(stress, strain_rate, own_stress, &settings),
             publication,
             run_states,
-            inversions,
-            done: None,
+            results,
+            remark: Remark::default(),
+            verdict: None,
             stage: Stage::Starting,
             duplicates: DuplicateSimulators::new(own_stress.participant()),
             resumed,
@@ -155,16 +161,28 @@ impl DemSimulator {
     }
 }
 
+/// Subscribes to the results of a run of this scene.
+fn results_of(bus: &mut dyn Bus, scene: &Scene, settings: &Settings) -> Result<Results, BusError> {
+    let last = scene.phases.iter().rfind(|phase| phase.publish || phase.record.is_some());
+    let is_within_phase = last.is_some_and(|phase| !phase.publish);
+    let end = RunEnd::new(&settings.awaited, settings.recorded.clone(), is_within_phase);
+    Results::subscribe(bus, end, scene.start.is_some())
+}
+
 impl Node for DemSimulator {
     fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
         let now = bus.now();
         self.receive_run_states(bus, now)?;
-        self.inversions.receive(bus)?;
+        if let Some(results) = &mut self.results {
+            results.receive(bus)?;
+        }
         if let Some(reason) = self.servo.receive(bus, now)? {
             return self.fail(bus, &reason);
         }
-        let state = if self.stage == Stage::Finished { RunState::FINISHED } else { RunState::RUNNING };
-        self.publication.progress(self.run.simulation(), state, now);
+        let (run, is_finished) = (self.run.simulation(), self.stage == Stage::Finished);
+        let state = if is_finished { RunState::FINISHED } else { RunState::RUNNING };
+        let remark = || if is_finished { self.remark.clone() } else { run.left_out().into() };
+        self.publication.progress(run, state, remark, now);
         self.publication.sample(bus, self.run.simulation())?;
         if !self.publication.deliver(bus)? {
             return Ok(Next::Wait(HOLD));
@@ -199,7 +217,8 @@ impl Node for DemSimulator {
             Stage::Starting if self.awaited.is_empty() => "starting".into(),
             Stage::Starting => format!("waiting for {}", self.awaited),
             Stage::Running => format!("phase {phase}"),
-            Stage::Finished => "finished".into(),
+            Stage::Finished if self.remark.text.is_empty() => "finished".into(),
+            Stage::Finished => self.remark.text.clone(),
         };
         Health::ok(message)
             .with_phase(&PhaseReport { name: phase.to_owned(), share, unmet })
@@ -237,7 +256,7 @@ impl Node for DemSimulator {
             }
             Stage::Finished => {
                 flush_last_messages(bus);
-                Ok(Exit::Done)
+                Ok(self.exit_after_end())
             }
         }
     }

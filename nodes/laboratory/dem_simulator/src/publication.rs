@@ -1,7 +1,7 @@
 //! All that a run publishes besides its requests: packings, the state of the run, energies and samples. The requests go through
 //! the same queue.
 
-use crate::messages::{self, Packings};
+use crate::messages::{self, Packings, Remark};
 use crate::samples::Samples;
 use crate::send_queue::SendQueue;
 use grainlab_experiment::{ExperimentError, Simulation, StepOutcome};
@@ -54,8 +54,8 @@ impl Publication {
         self.queue.push_packing(to_cdr(packing));
     }
 
-    pub(crate) fn state(&mut self, run: &Simulation, state: u8, text: &str) {
-        let message = messages::run_state(run, state, self.packings, text);
+    pub(crate) fn state(&mut self, run: &Simulation, state: u8, remark: impl Into<Remark>) {
+        let message = messages::run_state(run, state, self.packings, &remark.into());
         self.queue.push_state(self.run_state.id(), to_cdr(&message));
     }
 
@@ -66,11 +66,17 @@ impl Publication {
         Ok(())
     }
 
-    /// Publishes the state of the run once a second.
-    pub(crate) fn progress(&mut self, run: &Simulation, state: u8, now: Duration) {
+    /// Publishes the state of the run once a second, with the remark that `remark` returns.
+    pub(crate) fn progress<R: Into<Remark>>(
+        &mut self,
+        run: &Simulation,
+        state: u8,
+        remark: impl FnOnce() -> R,
+        now: Duration,
+    ) {
         if now >= self.next_beat {
             self.next_beat = now + BEAT;
-            self.state(run, state, &run.left_out());
+            self.state(run, state, remark());
         }
     }
 
@@ -114,7 +120,7 @@ impl Publication {
             self.next_beat = now + BEAT;
             let left_out = run.left_out();
             log::info!("the next phase is {left_out}");
-            self.state(run, msg::RunState::RUNNING, &left_out);
+            self.state(run, msg::RunState::RUNNING, left_out);
         }
         Ok(())
     }
@@ -129,7 +135,7 @@ impl Publication {
     ) -> Result<(), BusError> {
         self.next_beat = now + BEAT;
         self.samples.end(bus, sequence, body)?;
-        self.state(run, msg::RunState::FINISHED, "");
+        self.state(run, msg::RunState::FINISHED, Remark::default());
         self.samples.tell_time(bus, run.engine().time())?;
         log::info!("the loading path is done at step {}", run.engine().steps());
         Ok(())
@@ -146,7 +152,7 @@ impl Publication {
     ) -> Result<(), String> {
         let published = self.packing(run).map_err(|e| e.to_string());
         self.samples.end(bus, sequence, body).map_err(|e| e.to_string())?;
-        self.state(run, msg::RunState::FAILED, reason);
+        self.state(run, msg::RunState::FAILED, reason.to_owned());
         let delivered = self.deliver_all(bus);
         flush_last_messages(bus);
         published?;

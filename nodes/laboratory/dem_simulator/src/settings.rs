@@ -1,5 +1,6 @@
 //! The parameters of the node.
 
+use crate::run_end::{DATA, RecordedSpeeds};
 use grainlab_core::Packing;
 use grainlab_dem::{Dem, Engine, Simd};
 use grainlab_engine::{Compute, EngineFactory, ThreadsError};
@@ -32,11 +33,14 @@ pub fn parameters() -> Vec<ParameterSpec> {
         "min_readers" 1_i64, Range::Integer { min: 1, max: 1000 }, "readers that each topic of wait_for needs; clock needs one";
         "min_packing_readers" 0_i64, Range::Integer { min: 0, max: 1000 },
             "readers that packing needs where wait_for has it, 0 for min_readers";
-        "exit_when_finished" false, Range::Any,
-            "end when the loading path is done; else stay, so that late readers get the last packing";
-        "until_inverted" Vec::<String>::new(), Range::Choice(&["packing_report", "moduli", "wave_speeds"]),
-            "with exit_when_finished: stay until the last packing is inverted from the data of these topics, as in [packing_report]";
-        "inverted_within" 60.0, time, "longest time to wait for until_inverted after the end of the loading path, s";
+        "finish" "never", Range::Choice(&["never", "inverted", "at_once"]),
+            "when the process ends: never, so that late readers get the last packing; inverted, when all data about the last packing \
+             are inverted, with the exit code of the run; at_once, at the end of the loading path";
+        "awaited" Vec::<String>::new(), Range::Choice(&["packing_report", "moduli", "wave_speeds"]),
+            "topics whose data about the last packing are awaited, even if no program has sent any about another packing, as in [moduli]";
+        "exit_when_finished" false, Range::Any, "earlier name: finish:=at_once, or finish:=inverted with until_inverted";
+        "until_inverted" Vec::<String>::new(), Range::Choice(&["packing_report", "moduli", "wave_speeds"]), "earlier name of awaited";
+        "inverted_within" 0.0, time, "without effect: the limits are fixed";
         "ahead" true, Range::Any,
             "continue with the answer predicted by the servo's law while the answer is in transit, up to 4000 grains; results \
              do not depend on it";
@@ -58,6 +62,17 @@ const LAMMPS_COMMAND: &str = "lmp";
 /// Longest time limit, a year: clocks overflow beyond some.
 const LONGEST_LIMIT: Duration = Duration::from_secs(365 * 86_400);
 
+/// When the process of the simulator ends by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Finish {
+    /// Never: late readers get the last packing.
+    Never,
+    /// When all data about the last packing are inverted.
+    Inverted,
+    /// At the end of the loading path.
+    AtOnce,
+}
+
 /// The parameters, typed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -73,12 +88,12 @@ pub struct Settings {
     pub min_readers: usize,
     /// Readers that `packing` needs, which has more of them than the others; `None`: as many.
     pub min_packing_readers: Option<usize>,
-    /// True if the process ends when the loading path is done.
-    pub exit_when_finished: bool,
-    /// Topics whose data of the last packing must be inverted before the process ends.
-    pub until_inverted: Vec<Topic>,
-    /// Longest wait for that.
-    pub inverted_within: Duration,
+    /// When the process ends.
+    pub finish: Finish,
+    /// Topics whose data about the last packing are awaited in any case.
+    pub awaited: Vec<Topic>,
+    /// Wave speeds in the recording of a run that is resumed.
+    pub recorded: RecordedSpeeds,
     /// True to continue with the answer predicted by the servo's law while the answer is in transit.
     pub ahead: bool,
     /// Name of the engine; empty for the engine of the packing that the run resumes from, and for ours in a new run.
@@ -148,6 +163,15 @@ impl From<&Parameters> for Settings {
             let named = |t: &&Topic| names.iter().any(|name| name == t.name.trim_start_matches('/'));
             known.iter().filter(named).copied().collect()
         };
+        let [awaited, earlier]: [Vec<Topic>; 2] =
+            ["awaited", "until_inverted"].map(|name| topics_of(name, &DATA));
+        let finish = match (parameters.get::<String>("finish").as_str(), parameters.get("exit_when_finished"))
+        {
+            ("never", true) if earlier.is_empty() => Finish::AtOnce,
+            ("never", true) | ("inverted", _) => Finish::Inverted,
+            ("at_once", _) => Finish::AtOnce,
+            _ => Finish::Never,
+        };
         Self {
             look_around: seconds("look_around"),
             resend_after: seconds("resend_after"),
@@ -155,12 +179,9 @@ impl From<&Parameters> for Settings {
             wait_for: topics_of("wait_for", &AWAITED),
             min_readers: count("min_readers") as usize,
             min_packing_readers: Some(count("min_packing_readers") as usize).filter(|n| *n > 0),
-            exit_when_finished: parameters.get("exit_when_finished"),
-            until_inverted: topics_of(
-                "until_inverted",
-                &[topics::PACKING_REPORT, topics::MODULI, topics::WAVE_SPEEDS],
-            ),
-            inverted_within: seconds("inverted_within"),
+            finish,
+            awaited: awaited.into_iter().chain(earlier).collect(),
+            recorded: RecordedSpeeds::default(),
             ahead: parameters.get("ahead"),
             engine: parameters.get("engine"),
             next_request: 0,

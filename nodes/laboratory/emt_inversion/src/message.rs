@@ -15,33 +15,49 @@ use grainlab_msgs::{Topic, msg, topics};
 /// The answer to one set of data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
-    /// One estimate per model, in the order of [`Settings::models`]; header, name and step are those of the data.
+    /// One estimate per model, in the order of [`Settings::models`], or none for data that say why they have nothing to invert; header,
+    /// name and step are those of the data.
     pub message: msg::Microstructure,
     /// Why the data were refused; every estimate is then unknown, with this reason.
     pub refused: Option<BoundaryError>,
 }
 
-/// The microstructure inferred from the report of a packing; `None` without a stiffness, from which nothing is inferred. The result
+/// Returns the microstructure inferred from the report of a packing; without estimates if the packing has no stiffness. The result
 /// depends only on the two arguments.
-pub fn microstructure_of_report(report: &msg::PackingReport, settings: &Settings) -> Option<Answer> {
+pub fn microstructure_of_report(report: &msg::PackingReport, settings: &Settings) -> Answer {
+    let source =
+        Source { header: &report.header, name: "", step: report.source_step, topic: &topics::PACKING_REPORT };
     let observed = match PackingReport::try_from(report) {
-        Ok(report) => Ok(of_report(&report, settings)?),
-        Err(_) if report.stiffness.is_empty() => return None,
-        Err(refused) => Err(refused),
+        Ok(read) => of_report(&read, settings).map(Ok),
+        Err(_) if report.stiffness.is_empty() => None,
+        Err(refused) => Some(Err(refused)),
     };
-    Some(answer(&report.header, "", report.source_step, &topics::PACKING_REPORT, observed, settings))
+    observed.map_or_else(|| source.nothing(), |observed| source.answer(observed, settings))
 }
 
-/// The microstructure inferred from one set of moduli.
+/// Returns the microstructure inferred from one set of moduli.
 pub fn microstructure_of_moduli(moduli: &msg::Moduli, settings: &Settings) -> Answer {
+    let (header, name, step) = (&moduli.header, &moduli.name, moduli.source_step);
     let observed = ModuliReading::try_from(moduli).map(|reading| of_moduli(&reading, settings));
-    answer(&moduli.header, &moduli.name, moduli.source_step, &topics::MODULI, observed, settings)
+    Source { header, name, step, topic: &topics::MODULI }.answer(observed, settings)
 }
 
-/// The microstructure inferred from one set of wave speeds.
+/// Returns the microstructure inferred from one set of wave speeds; without estimates if the set has notes in place of speeds.
 pub fn microstructure_of_speeds(speeds: &msg::WaveSpeeds, settings: &Settings) -> Answer {
-    let observed = WaveSpeedsReading::try_from(speeds).map(|reading| of_speeds(&reading, settings));
-    answer(&speeds.header, &speeds.name, speeds.source_step, &topics::WAVE_SPEEDS, observed, settings)
+    let (header, name, step) = (&speeds.header, &speeds.name, speeds.source_step);
+    let source = Source { header, name, step, topic: &topics::WAVE_SPEEDS };
+    match WaveSpeedsReading::try_from(speeds) {
+        Ok(reading) if reading.is_declined() => source.nothing(),
+        reading => source.answer(reading.map(|reading| of_speeds(&reading, settings)), settings),
+    }
+}
+
+/// What an answer copies from its data.
+struct Source<'a> {
+    header: &'a Header,
+    name: &'a str,
+    step: u64,
+    topic: &'a Topic,
 }
 
 fn is_of_waves(source: &Topic) -> bool {
@@ -56,55 +72,67 @@ fn has_free_contacts(observed: &Observed, source: &Topic) -> bool {
     }
 }
 
-fn answer(
-    header: &Header,
-    name: &str,
-    source_step: u64,
-    source: &Topic,
-    observed: Result<Result<Observed, Unobservable>, BoundaryError>,
-    settings: &Settings,
-) -> Answer {
-    let (observed, refused) = match observed {
-        Ok(observed) => (observed, None),
-        Err(error) => (Err(Unobservable::Refused(error.clone())), Some(error)),
-    };
-    let is_free = observed.as_ref().map_or(is_of_waves(source), |o| has_free_contacts(o, source));
-    let applies =
-        |model: &&'static dyn Model| !settings.chooses || is_free || *model != grainlab_emt::free_contact();
-    let estimates = settings.models.iter().copied().filter(applies).map(|model| {
-        let own = || model.default_calibration();
-        let calibration = settings.calibration.as_ref().unwrap_or_else(own);
-        let without = |gamma: StrainRatio, reason: Note| Estimate {
-            gamma: model.uses_gamma().then(|| GammaUsed { value: gamma.value, source: gamma.source.name() }),
-            ..Estimate::unknown(model.name(), calibration.name(), vec![reason])
-        };
-        let observed = match &observed {
-            Ok(observed) => observed,
-            Err(nothing) => {
-                return estimate_message(&without(StrainRatio::ZERO, Note::no_answer(nothing.to_string())));
-            }
-        };
-        let mut estimate = match model.infer(&observed.observation, calibration) {
-            Ok(inversion) => of_data_and_model(&inversion, observed),
-            Err(error) => without(observed.observation.conditions.gamma, Note::from(&error)),
-        };
-        estimate.add_notes(&observed.notes);
-        if is_free && *model != *grainlab_emt::free_contact() {
-            // Hertz–Mindlin contacts are an assumption that the data do not test.
-            estimate.raise(Code::ContactLawAssumed, Status::Extrapolated);
+impl Source<'_> {
+    fn message(&self, estimates: Vec<msg::Estimate>) -> msg::Microstructure {
+        msg::Microstructure {
+            header: self.header.clone(),
+            name: self.name.to_owned(),
+            source_step: self.step,
+            // The name in the contract, not the resolved one: the bytes must not depend on a namespace or a remap.
+            source: self.topic.name.to_owned(),
+            estimates,
         }
-        estimate_message(&estimate)
-    });
-    let message = msg::Microstructure {
-        header: header.clone(),
-        name: name.to_owned(),
-        source_step,
-        // The name in the contract, not the resolved one: the bytes must not depend on a namespace or a
-        // remap.
-        source: source.name.to_owned(),
-        estimates: estimates.collect(),
-    };
-    Answer { message, refused }
+    }
+
+    /// The answer to data without a value to invert.
+    fn nothing(&self) -> Answer {
+        Answer { message: self.message(Vec::new()), refused: None }
+    }
+
+    fn answer(
+        &self,
+        observed: Result<Result<Observed, Unobservable>, BoundaryError>,
+        settings: &Settings,
+    ) -> Answer {
+        let (observed, refused) = match observed {
+            Ok(observed) => (observed, None),
+            Err(error) => (Err(Unobservable::Refused(error.clone())), Some(error)),
+        };
+        let is_free = observed.as_ref().map_or(is_of_waves(self.topic), |o| has_free_contacts(o, self.topic));
+        let applies = |model: &&'static dyn Model| {
+            !settings.chooses || is_free || *model != grainlab_emt::free_contact()
+        };
+        let estimates = settings.models.iter().copied().filter(applies).map(|model| {
+            let own = || model.default_calibration();
+            let calibration = settings.calibration.as_ref().unwrap_or_else(own);
+            let without = |gamma: StrainRatio, reason: Note| Estimate {
+                gamma: model
+                    .uses_gamma()
+                    .then(|| GammaUsed { value: gamma.value, source: gamma.source.name() }),
+                ..Estimate::unknown(model.name(), calibration.name(), vec![reason])
+            };
+            let observed = match &observed {
+                Ok(observed) => observed,
+                Err(nothing) => {
+                    return estimate_message(&without(
+                        StrainRatio::ZERO,
+                        Note::no_answer(nothing.to_string()),
+                    ));
+                }
+            };
+            let mut estimate = match model.infer(&observed.observation, calibration) {
+                Ok(inversion) => of_data_and_model(&inversion, observed),
+                Err(error) => without(observed.observation.conditions.gamma, Note::from(&error)),
+            };
+            estimate.add_notes(&observed.notes);
+            if is_free && *model != *grainlab_emt::free_contact() {
+                // Hertz–Mindlin contacts are an assumption that the data do not test.
+                estimate.raise(Code::ContactLawAssumed, Status::Extrapolated);
+            }
+            estimate_message(&estimate)
+        });
+        Answer { message: self.message(estimates.collect()), refused }
+    }
 }
 
 /// Returns the estimate of a model. The misfit of the data about the moduli and that of the moduli about the structure add up.

@@ -20,7 +20,7 @@ const BACKLOG: u32 = 1024;
 struct Source<T> {
     topic: &'static str,
     messages: Subscription<T>,
-    invert: fn(&T, &Settings) -> Option<Answer>,
+    invert: fn(&T, &Settings) -> Answer,
 }
 
 /// Counts of the data so far.
@@ -54,10 +54,8 @@ impl EmtInversion {
         Ok(Self {
             settings,
             reports: Source::subscribe(bus, &topics::PACKING_REPORT, microstructure_of_report)?,
-            moduli: Source::subscribe(bus, &topics::MODULI, |m, s| Some(microstructure_of_moduli(m, s)))?,
-            wave_speeds: Source::subscribe(bus, &topics::WAVE_SPEEDS, |m, s| {
-                Some(microstructure_of_speeds(m, s))
-            })?,
+            moduli: Source::subscribe(bus, &topics::MODULI, microstructure_of_moduli)?,
+            wave_speeds: Source::subscribe(bus, &topics::WAVE_SPEEDS, microstructure_of_speeds)?,
             microstructure: Publisher::advertise(bus, &topics::MICROSTRUCTURE)?,
             tally: Tally::default(),
         })
@@ -68,13 +66,13 @@ impl<T: Message> Source<T> {
     fn subscribe(
         bus: &mut dyn Bus,
         topic: &Topic,
-        invert: fn(&T, &Settings) -> Option<Answer>,
+        invert: fn(&T, &Settings) -> Answer,
     ) -> Result<Self, BusError> {
         let messages = Subscription::subscribe(bus, topic, Demand::reliable(BACKLOG))?;
         Ok(Self { topic: topic.name, messages, invert })
     }
 
-    /// Answers all received data, also those that are refused.
+    /// Answers all received data, also those that are refused or have nothing to invert.
     fn answer(
         &self,
         bus: &mut dyn Bus,
@@ -84,8 +82,7 @@ impl<T: Message> Source<T> {
     ) -> Result<(), BusError> {
         while let Some((data, info)) = self.messages.take_valid(bus)? {
             tally.note_gap(self.topic, &info);
-            // From a packing that is not jammed nothing is inferred.
-            let Some(Answer { message, refused }) = (self.invert)(&data, settings) else { continue };
+            let Answer { message, refused } = (self.invert)(&data, settings);
             match (microstructure.publish_about(bus, &message, info.origin()), refused) {
                 (Ok(_), None) => tally.count(&message),
                 (Ok(_), Some(error)) => {
@@ -120,6 +117,10 @@ impl Tally {
     }
 
     fn count(&mut self, message: &Microstructure) {
+        // Nothing is inferred from a packing that is not jammed.
+        if message.estimates.is_empty() {
+            return;
+        }
         self.inverted += 1;
         self.last_step = Some(message.source_step);
         self.trouble = None;

@@ -90,7 +90,6 @@ impl Running {
         Ok(engine)
     }
 
-    /// The program at a saved state.
     pub(crate) fn resumed(
         with: (&str, Duration),
         packing: &Packing,
@@ -141,7 +140,6 @@ impl Running {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The present state, read anew.
     fn read_packing(&self) -> Result<Packing, EngineError> {
         let (grains, contacts) = (self.folder.file("grains.dump"), self.folder.file("contacts.dump"));
         let mut link = self.link();

@@ -33,13 +33,11 @@ pub(crate) fn data_file(packing: &Packing, frame: &Frame) -> String {
     text
 }
 
-/// Columns of a dump of grains.
 pub(crate) const GRAIN_COLUMNS: &str = "id xu yu zu vx vy vz fx fy fz omegax omegay omegaz tqx tqy tqz";
 /// Columns of a dump of contacts, from the computes `ids` and `contacts`.
 pub(crate) const CONTACT_COLUMNS: &str = "c_ids[1] c_ids[2] c_contacts[1] c_contacts[2] c_contacts[3] c_contacts[4] c_contacts[5] \
      c_contacts[6]";
 
-/// Files that a packing is read from.
 pub(crate) struct Dumps<'a> {
     pub(crate) grains: &'a Path,
     pub(crate) contacts: &'a Path,

@@ -47,7 +47,6 @@ pub(crate) fn check_law(law: &ContactLaw) -> Result<(), EngineError> {
     Ok(())
 }
 
-/// Refuses settings that LAMMPS does not have.
 pub(crate) fn check_settings(settings: &EngineSettings) -> Result<(), EngineError> {
     let EngineSettings { friction, damping, drag, spin_drag, skin, .. } = *settings;
     for (name, value) in [("drag", drag), ("spin_drag", spin_drag), ("skin", skin)] {
@@ -80,7 +79,6 @@ fn restitution(place: &str, damping: f64) -> Result<f64, EngineError> {
     Ok((-PI * s / (1.0 - s * s).sqrt()).exp())
 }
 
-/// The arguments of `pair_coeff` for one material.
 pub(crate) fn pair_coeff(material: &Material, settings: &EngineSettings) -> Result<String, EngineError> {
     let young = 2.0 * material.shear_modulus * (1.0 + material.poisson_ratio);
     let restitution = restitution("", settings.damping)?;

@@ -88,7 +88,6 @@ impl Program {
         Ok((program, about))
     }
 
-    /// Version and number of processes.
     fn about(&mut self) -> Result<EngineProgram, EngineError> {
         self.tell(&format!("{NEEDS}info communication\n"))?;
         let mut ranks = None;

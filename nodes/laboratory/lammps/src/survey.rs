@@ -22,7 +22,6 @@ pub(crate) struct Survey {
     forces: f64,
 }
 
-/// The load of contacts.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Load {
     pub(crate) contacts: f64,

@@ -1,7 +1,5 @@
 //! Progress and end of a run by its messages, for nodes as processes and in one process.
 
-use super::deadline::{Deadline, Logs, nothing};
-use super::pending_results::{PendingResults, ResultState, Source};
 use super::plan::NodePlan;
 use super::progress::Progress;
 use super::said;
@@ -9,11 +7,8 @@ use super::watch::Event;
 use crate::nodes::NodeKind;
 use grainlab_msgs::msg::RunState;
 use grainlab_msgs::topics;
+use grainlab_node_kit::Exit;
 use std::collections::{BTreeMap, BTreeSet};
-use std::time::Instant;
-
-/// The last packing is being measured by the probe, or is in its queue.
-const PROBED: ResultState = ResultState::Open(Source::Node(NodeKind::AcousticProbe));
 
 /// Outline of the loading path of the run.
 #[derive(Clone, Copy, Debug)]
@@ -22,8 +17,6 @@ pub struct Outline {
     pub phases: usize,
     /// The run starts from a packing, which is published as that of step 0.
     pub starts_from_packing: bool,
-    /// The last packing is recorded within a phase: it may have no results.
-    pub ends_within: bool,
 }
 
 /// The messages of the run that the launcher received.
@@ -33,18 +26,6 @@ pub struct Received {
     pub packings: Option<u32>,
     /// Steps of the packings with a result, by topic.
     pub results: BTreeMap<&'static str, BTreeSet<u64>>,
-}
-
-/// State of a run, as far as its messages say.
-pub(super) enum Verdict {
-    /// The loading path is not at its end.
-    UnderWay,
-    /// Every result is there that is expected.
-    Complete,
-    /// The last packing has nothing to invert; the reason was printed.
-    Invalid,
-    /// Results of the last packing are missing; with a new time limit for them.
-    Pending(Option<Deadline>),
 }
 
 pub(super) struct Followed {
@@ -62,14 +43,10 @@ pub(super) struct Followed {
     pub(super) failed: Option<String>,
     /// The watch failed: the end of the run would not be noticed.
     pub(super) blind: bool,
-    pub(super) pending: PendingResults,
-    pub(super) logs: Logs,
-    /// The probe reported work since the last check.
-    probing: bool,
-    /// Step of the packing that the probe measures, and when that was first seen.
-    probed: Option<(u64, Instant)>,
-    /// State of the results for which the last time limit was set.
-    limited: Option<ResultState>,
+    /// Every process with its name, which is that of its log.
+    processes: Vec<(Option<NodeKind>, String)>,
+    /// A third-party program sent data of a packing.
+    has_foreign_data: bool,
     /// Why the run did not end as it should.
     reasons: Vec<String>,
     /// Received results: steps of packings by topic.
@@ -92,36 +69,22 @@ impl Followed {
             finished: None,
             failed: None,
             blind: false,
-            pending: PendingResults::of(plans),
-            logs: Logs::new(plans),
-            probing: false,
-            probed: None,
-            limited: None,
+            processes: plans.iter().map(|plan| (plan.node, plan.name.clone())).collect(),
+            has_foreign_data: false,
             reasons: Vec::new(),
             results: BTreeMap::new(),
             left: BTreeSet::new(),
         }
     }
 
-    /// Judges the run by what was received so far.
-    pub(super) fn verdict(&mut self) -> Verdict {
-        let Some(last) = self.finished.as_ref().map(RunState::last_packing) else { return Verdict::UnderWay };
-        let Some(step) = last else { return Verdict::Complete };
-        match self.pending.state_of(step) {
-            ResultState::Complete => Verdict::Complete,
-            ResultState::Declined(_) | ResultState::Left if self.outline.ends_within => Verdict::Complete,
-            ResultState::Declined(node) => {
-                self.complain(format!("the last packing has no {}", nothing(node, &self.logs)));
-                Verdict::Invalid
-            }
-            standing => {
-                // Bursts through a long path may take any time; the run waits for a probe that works.
-                let at_work = std::mem::take(&mut self.probing) && standing == PROBED;
-                let is_new = self.limited.replace(standing) != Some(standing) || at_work;
-                let of = if self.outline.ends_within { Deadline::within_a_phase } else { Deadline::of };
-                Verdict::Pending(is_new.then(|| of(standing, &self.logs)))
-            }
+    /// Returns the exit of a run whose results are judged by its simulator, which says why the run is not complete.
+    pub(super) fn verdict(&mut self) -> Option<Exit> {
+        let finished = self.finished.as_ref()?;
+        let (exit, reason) = (finished.exit()?, finished.message.clone());
+        if exit != Exit::Done {
+            self.complain(format!("{reason}: see logs/"));
         }
+        Some(exit)
     }
 
     /// Why the run did not end as it should, and the messages that were received.
@@ -138,7 +101,12 @@ impl Followed {
                 self.progress.show(&state);
                 match state.state {
                     RunState::RUNNING => {}
-                    RunState::FINISHED => self.finished = Some(state),
+                    RunState::FINISHED => {
+                        if state.exit_code.is_empty() && !state.message.is_empty() {
+                            self.progress.still(&state.message);
+                        }
+                        self.finished = Some(state);
+                    }
                     _ => self.failed = Some(state.message),
                 }
             }
@@ -153,29 +121,14 @@ impl Followed {
                 grainlab_console::say!("grainlab: {sentence}");
                 self.crowding = Some(sentence);
             }
-            Event::Measured(topic, step) => {
+            Event::Measured { topic, step, has_first_stamp } => {
                 self.note_result(topic, step);
-                self.pending.measured(topic, step);
+                let is_of_packing = step > 0 || (has_first_stamp && self.outline.starts_from_packing);
+                self.has_foreign_data |= is_of_packing && !self.is_measured_by_node(topic);
             }
-            Event::MeasuredStart if self.outline.starts_from_packing => self.pending.measured_start(),
-            Event::MeasuredStart => {}
-            Event::Declined(topic, step) => self.pending.declined(topic, step),
-            Event::Probing(step) => {
-                self.probing = true;
-                let (of, since) = *self.probed.get_or_insert_with(|| (step, Instant::now()));
-                let since = if of == step { since } else { self.probed.insert((step, Instant::now())).1 };
-                if self.finished.is_some() {
-                    let seconds = since.elapsed().as_secs();
-                    self.progress.still(&format!(
-                        "measuring waves through the packing of step {step}, for {seconds} s"
-                    ));
-                }
-            }
-            Event::Microstructure { source, step, member, nothing } => {
+            Event::Microstructure { source, step, nothing } => {
                 self.note_result(topics::MICROSTRUCTURE.name, step);
-                self.pending.inverted(&source, step, member);
-                let is_of_start =
-                    self.outline.starts_from_packing && self.pending.is_measured_by_node(&source);
+                let is_of_start = self.outline.starts_from_packing && self.is_measured_by_node(&source);
                 self.progress.say(&said::inverted(&source, step, is_of_start, nothing.as_deref()));
             }
             Event::Stranger(text) => {
@@ -197,16 +150,47 @@ impl Followed {
     /// Complains that a node ended with this code; false if its end was a reason already.
     pub(super) fn blame(&mut self, node: NodeKind, code: u8) -> bool {
         let says = |name: &str| self.reasons.iter().any(|r| r.starts_with(&format!("{name} ended")));
-        let is_new = !self.logs.names(Source::Node(node)).any(says);
-        let log = self.logs.of(Source::Node(node));
+        let is_new = !self.names(node).any(says);
+        let log = self.log_of(node);
         is_new.then(|| self.complain(format!("{node} ended with exit code {code}: {log}"))).is_some()
     }
 
     /// Complains about a simulator that ended with an error after its last message.
     pub(super) fn simulator_failed(&mut self) {
         let node = NodeKind::DemSimulator;
-        let log = self.logs.of(Source::Node(node));
-        self.complain(format!("{node} failed: {log}"));
+        self.complain(format!("{node} failed: {}", self.log_of(node)));
+    }
+
+    fn names(&self, node: NodeKind) -> impl Iterator<Item = &str> {
+        self.processes.iter().filter(move |(of, _)| *of == Some(node)).map(|(_, name)| name.as_str())
+    }
+
+    /// Returns the advice to read the logs of a node: names and namespaces of the launch file are in them.
+    fn log_of(&self, node: NodeKind) -> String {
+        let logs = self.names(node).map(|name| format!("logs/{name}.log"));
+        format!("see {}", logs.collect::<Vec<_>>().join(", "))
+    }
+
+    fn is_measured_by_node(&self, topic: &str) -> bool {
+        let measured = self.processes.iter().filter_map(|(node, _)| node.as_ref()?.measures());
+        measured.into_iter().any(|by_node| by_node.name == topic)
+    }
+
+    /// Returns a sentence on third-party programs, if none of them sent data of any packing.
+    pub(super) fn silent_programs(&self) -> Option<String> {
+        let has = |node| self.names(node).next().is_some();
+        let programs: Vec<_> =
+            self.processes.iter().filter(|(node, _)| node.is_none()).map(|(_, name)| name.as_str()).collect();
+        // One of them is the servo, if no node is.
+        let is_servo = !has(NodeKind::ServoController) && programs.len() == 1;
+        let may_be_silent =
+            self.has_foreign_data || has(NodeKind::AcousticProbe) || is_servo || programs.is_empty();
+        (!may_be_silent).then(|| {
+            format!(
+                "no wave speeds or other data of a packing came from {} before the run ended",
+                programs.join(", ")
+            )
+        })
     }
 
     /// Data of an external instrument do not belong to a packing of the run.
@@ -230,21 +214,59 @@ impl Followed {
 mod tests {
     use super::*;
 
+    fn plan(node: Option<NodeKind>, name: &str) -> NodePlan {
+        NodePlan { name: name.to_owned(), node, ..NodePlan::default() }
+    }
+
+    fn followed(plans: &[NodePlan]) -> Followed {
+        Followed::new(plans, Outline { phases: 1, starts_from_packing: true })
+    }
+
     #[test]
     fn a_reason_names_the_log_of_the_process_as_the_launch_file_calls_it() {
-        let plan =
-            |node, name: &str| NodePlan { name: name.to_owned(), node: Some(node), ..NodePlan::default() };
-        let plans = [plan(NodeKind::Recorder, "left-recorder"), plan(NodeKind::DemSimulator, "left-sand")];
-        let outline = Outline { phases: 1, starts_from_packing: false, ends_within: false };
-        let mut followed = Followed::new(&plans, outline);
+        let mut followed = followed(&[
+            plan(Some(NodeKind::Recorder), "left-recorder"),
+            plan(Some(NodeKind::DemSimulator), "left-sand"),
+        ]);
         followed.simulator_failed();
         assert!(followed.blame(NodeKind::Recorder, 1));
-        followed.finished = Some(RunState { packings: 1, last_packing_step: 7, ..RunState::default() });
-        let Verdict::Pending(Some(late)) = followed.verdict() else { panic!("it is measured") };
         let needles = ["see logs/left-sand.log", "see logs/left-recorder.log"];
         assert!(followed.reasons.iter().zip(needles).all(|(reason, log)| reason.ends_with(log)));
-        assert!(late.message.ends_with("the launch file starts no fabric_analyzer"), "{}", late.message);
         followed.complain("left-recorder ended with exit code 3: the run ends".to_owned());
         assert!(!followed.blame(NodeKind::Recorder, 1), "it has said so under its name");
+    }
+
+    #[test]
+    fn the_simulator_judges_the_results_and_its_reason_is_that_of_the_run() {
+        let mut followed = followed(&[]);
+        let state = |exit_code: &[u8], message: &str| {
+            let (exit_code, message) = (exit_code.to_vec(), message.to_owned());
+            Event::State(RunState { state: RunState::FINISHED, exit_code, message, ..RunState::default() })
+        };
+        followed.take(state(&[], "waiting for wave_speeds of step 7"));
+        assert_eq!(followed.verdict(), None);
+        followed.take(state(&[4], "no stiffness"));
+        assert_eq!(followed.verdict(), Some(Exit::PhysicsInvalid));
+        assert_eq!(followed.reasons, ["no stiffness: see logs/"]);
+        followed.take(state(&[0], ""));
+        assert_eq!(followed.verdict(), Some(Exit::Done));
+    }
+
+    #[test]
+    fn a_program_that_sent_no_data_of_any_packing_is_named_unless_it_is_the_servo() {
+        let (program, servo) = (plan(None, "watch"), plan(Some(NodeKind::ServoController), "servo"));
+        assert_eq!(followed(std::slice::from_ref(&program)).silent_programs(), None, "it is the servo");
+        let probe = plan(Some(NodeKind::AcousticProbe), "probe");
+        assert_eq!(followed(&[program.clone(), servo.clone(), probe]).silent_programs(), None);
+        let mut followed = followed(&[program, servo]);
+        let sends = |step, has_first_stamp| Event::Measured {
+            topic: topics::WAVE_SPEEDS.name,
+            step,
+            has_first_stamp,
+        };
+        followed.take(sends(0, false));
+        assert!(followed.silent_programs().unwrap().contains("came from watch before"));
+        followed.take(sends(0, true));
+        assert_eq!(followed.silent_programs(), None);
     }
 }

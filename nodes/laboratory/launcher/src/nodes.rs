@@ -2,7 +2,7 @@
 //!
 //! To add a node: its crate, a variant here with all matches on it, and the launch files that start it.
 
-use crate::last_packing;
+use crate::{last_packing, recorded_speeds};
 use clap::ValueEnum;
 use grainlab_acoustic_probe::AcousticProbe;
 use grainlab_dem_simulator::DemSimulator;
@@ -155,6 +155,9 @@ impl NodeKind {
                 topics::STRESS,
                 topics::STRAIN_RATE,
                 topics::PACKING,
+                topics::PACKING_REPORT,
+                topics::MODULI,
+                topics::WAVE_SPEEDS,
                 topics::MICROSTRUCTURE,
                 topics::RUN_STATE,
                 topics::ENERGY,
@@ -256,12 +259,22 @@ fn simulator(bus: &mut dyn Bus, parameters: &Parameters) -> Result<DemSimulator,
     let sets: Vec<String> = parameters.get("set");
     let scene = scenes::load(&name, &sets, seed)?;
     let recording: String = parameters.get("resume");
+    let is_earlier = parameters.get::<bool>("exit_when_finished")
+        || !parameters.get::<Vec<String>>("until_inverted").is_empty()
+        || parameters.get::<f64>("inverted_within") > 0.0;
+    if is_earlier {
+        log::warn!(
+            "exit_when_finished, until_inverted and inverted_within are parameters of an earlier version: use finish and awaited"
+        );
+    }
     let mut settings = grainlab_dem_simulator::Settings::from(parameters);
     let from = match recording.as_str() {
         "" => scene.start.map(|packing| (packing, Vec::new())),
         recording => {
-            settings.next_request = last_packing::next_request(Path::new(recording))?;
-            Some(last_packing::read(Path::new(recording))?)
+            let recording = Path::new(recording);
+            settings.next_request = last_packing::next_request(recording)?;
+            settings.recorded = recorded_speeds::read(recording)?;
+            Some(last_packing::read(recording)?)
         }
     };
     DemSimulator::new(bus, scene.scene, from, settings)

@@ -4,11 +4,8 @@
 //! the run, and other programs cannot take part.
 
 use super::child::{Child, open_log};
-use super::deadline::Deadline;
-use super::followed::{Followed, Outline, Verdict};
-use super::pending_results::ResultState;
+use super::followed::{Followed, Outline};
 use super::plan::{NodePlan, PlanError};
-use super::recorded_speeds::RecordedSpeeds;
 use super::supervisor::{BEGINS_WITHIN, POLL_PERIOD, Supervised};
 use super::time_limit::TimeLimit;
 use super::watch::{Event, LAUNCHER, RunSubscriptions};
@@ -55,7 +52,6 @@ pub fn run_in_one_process(
     run: RunId,
     directory: &Path,
     outline: Outline,
-    recorded: &RecordedSpeeds,
 ) -> Result<Supervised, Failure> {
     check_one_process(&plans).map_err(Failure::usage)?;
     let begin = Instant::now();
@@ -65,8 +61,7 @@ pub fn run_in_one_process(
     let root = Some(std::process::id());
     let mut bus =
         hub.bus_as(names.for_node("launcher"), Identity { root, ..Identity::member_of(run, LAUNCHER) });
-    let mut followed = Followed::new(&plans, outline);
-    followed.pending.remember(recorded);
+    let followed = Followed::new(&plans, outline);
     let children: Vec<Child> = plans.into_iter().zip(1..).map(|(plan, n)| Child::new(plan, n)).collect();
     let simulator = children.iter().find(|c| c.plan.is(NodeKind::DemSimulator)).map(|c| c.member);
     let subscriptions = RunSubscriptions::new(&mut bus, simulator).map_err(Failure::failed)?;
@@ -108,7 +103,6 @@ impl OneProcess {
 
     /// Steps the nodes until the run is complete, a node has ended, or the user interrupts.
     fn attend(&mut self) -> Result<Exit, Failure> {
-        let mut deadline: Option<Deadline> = None;
         let mut beginning = TimeLimit::new(BEGINS_WITHIN);
         let mut next_look = self.hub.now();
         loop {
@@ -119,11 +113,8 @@ impl OneProcess {
             }
             if self.bus.has_data() {
                 self.receive()?;
-                match self.followed.verdict() {
-                    Verdict::UnderWay => {}
-                    Verdict::Complete => return Ok(Exit::Done),
-                    Verdict::Invalid => return Ok(Exit::PhysicsInvalid),
-                    Verdict::Pending(late) => deadline = late.or(deadline),
+                if let Some(exit) = self.followed.verdict() {
+                    return Ok(exit);
                 }
             }
             let ended = self.components.iter().enumerate().find_map(|(n, c)| Some((n, c.exit()?)));
@@ -135,15 +126,6 @@ impl OneProcess {
             }
             next_look = self.hub.now() + POLL_PERIOD;
             self.followed.progress.draw();
-            if let Some(late) = &mut deadline
-                && late.limit.is_over(false)
-            {
-                if late.of != ResultState::Settling {
-                    self.followed.complain(std::mem::take(&mut late.message));
-                    return Ok(late.exit);
-                }
-                return Ok(Exit::Done);
-            }
             if !self.followed.begun && beginning.is_over(false) {
                 beginning = TimeLimit::new(BEGINS_WITHIN);
                 self.followed.say_what_is_waited_for();

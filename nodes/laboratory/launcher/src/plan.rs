@@ -81,7 +81,7 @@ impl NodePlan {
             // The last value of a parameter takes precedence: this one is before those of the launch file, after `run NODE`.
             let given = ["--ros-args", "-p", "look_around:=0.0"].map(str::to_owned);
             self.arguments.splice(2..2, given);
-            self.insist(&["exit_when_finished:=false"]);
+            self.insist(&["finish:=never", "exit_when_finished:=false"]);
         }
     }
 

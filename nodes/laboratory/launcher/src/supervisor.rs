@@ -1,11 +1,8 @@
 //! Runs the processes of a launch: restarts them, and ends the run.
 
 use super::child::{Child, Ended, Run};
-use super::deadline::Deadline;
-use super::followed::{Followed, Outline, Received, Verdict};
-use super::pending_results::ResultState;
+use super::followed::{Followed, Outline, Received};
 use super::plan::NodePlan;
-use super::recorded_speeds::RecordedSpeeds;
 use super::stopped::Stopped;
 use super::time_limit::TimeLimit;
 use super::watch::{Event, Watch};
@@ -102,13 +99,6 @@ impl Supervisor {
         })
     }
 
-    /// Takes over what a resumed run has recorded before.
-    #[must_use]
-    pub fn resuming(mut self, recorded: &RecordedSpeeds) -> Self {
-        self.followed.pending.remember(recorded);
-        self
-    }
-
     /// Starts every process, waits for the end, ends every process.
     pub async fn run(mut self) -> Result<Supervised, Failure> {
         let begin = Instant::now();
@@ -159,7 +149,6 @@ impl Supervisor {
 
     /// Follows the run until it is complete; the children still run then.
     async fn attend(&mut self, events: &mut UnboundedReceiver<Event>) -> Exit {
-        let mut deadline: Option<Deadline> = None;
         let mut beginning = TimeLimit::new(BEGINS_WITHIN);
         loop {
             // Events take precedence over time limits.
@@ -182,16 +171,6 @@ impl Supervisor {
                 () = sleep(POLL_PERIOD) => {
                     self.followed.progress.draw();
                     let suspended = self.look_for_stopped();
-                    if let Some(late) = deadline.as_mut()
-                        && late.limit.is_over(suspended)
-                    {
-                        let (message, exit) = (std::mem::take(&mut late.message), late.exit);
-                        if late.of == ResultState::Settling {
-                            return self.caught_up().await;
-                        }
-                        self.followed.complain(message);
-                        return exit;
-                    }
                     if !self.followed.begun && beginning.is_over(suspended) {
                         beginning = TimeLimit::new(BEGINS_WITHIN);
                         self.followed.say_what_is_waited_for();
@@ -204,10 +183,9 @@ impl Supervisor {
                 }
             }
             match self.followed.verdict() {
-                Verdict::UnderWay => {}
-                Verdict::Complete => return self.caught_up().await,
-                Verdict::Invalid => return Exit::PhysicsInvalid,
-                Verdict::Pending(late) => deadline = late.or(deadline),
+                None => {}
+                Some(Exit::Done) => return self.caught_up().await,
+                Some(exit) => return exit,
             }
         }
     }
@@ -226,7 +204,7 @@ impl Supervisor {
     /// Ends a complete run, but waits until a stopped process continues and has had time to catch up: its writers keep
     /// the samples it missed only until they leave.
     async fn caught_up(&mut self) -> Exit {
-        if let Some(text) = self.followed.pending.silent_programs() {
+        if let Some(text) = self.followed.silent_programs() {
             // One that failed made the run incomplete.
             if self.children.iter().any(|c| c.plan.node.is_none() && !c.restarts.is_empty()) {
                 self.followed.complain(text);
@@ -310,9 +288,6 @@ impl Supervisor {
         let child = &self.children[index];
         if child.plan.respawn {
             return self.restart(index, how).await;
-        }
-        if !self.children.iter().any(|c| c.plan.node.is_none() && c.pid.is_some()) {
-            self.followed.pending.instruments_left();
         }
         if child.code == Some(0) {
             self.followed.progress.say(&format!("{} {how}", child.plan.name));

@@ -1,13 +1,13 @@
 //! Passes the run's messages over DDS to the supervisor.
 
 use crate::child::Run;
-use grainlab_acoustic_probe::{DECLINED_STEP, MEASURING};
 use grainlab_console::{Failure, say};
 use grainlab_core::notes::Status;
 use grainlab_core::results::Estimate;
 use grainlab_emt::recommended;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Microstructure, Moduli, PackingReport, RunState, WaveSpeeds};
+use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{PhaseReport, Topic, stamp, topics};
 use grainlab_node_kit::{
     Bus, BusError, DdsBus, Demand, Graph, Identity, Names, Participant, Report, Subscription, bus_named,
@@ -58,16 +58,14 @@ pub(crate) enum Event {
     /// The state of the run.
     State(RunState),
     /// The packing of this step was measured: its data were published on this topic.
-    Measured(&'static str, u64),
-    /// Wave speeds with step 0 and the stamp of a packing that a run starts from.
-    MeasuredStart,
-    /// The packing of this step has nothing to invert on this topic.
-    Declined(&'static str, u64),
-    /// An acoustic probe measures the packing of this step, which may take long.
-    Probing(u64),
-    /// The process with this member number inferred the microstructure of the packing of this step from data of this
-    /// topic; or, if no model has an estimate, why.
-    Microstructure { source: String, step: u64, member: u8, nothing: Option<String> },
+    Measured {
+        topic: &'static str,
+        step: u64,
+        /// They have the stamp of a packing that a run starts from, whose step is 0.
+        has_first_stamp: bool,
+    },
+    /// The microstructure of the packing of this step was inferred from data of this topic; or, if no model has an estimate, why.
+    Microstructure { source: String, step: u64, nothing: Option<String> },
     /// Progress of the present phase.
     Phase(PhaseReport),
     /// Activity of the simulator, or the condition that it waits for.
@@ -195,34 +193,24 @@ impl RunSubscriptions {
             }
         }
         while let Some((found, _)) = self.packing_reports.take_valid(bus)? {
-            send(Event::Measured(topics::PACKING_REPORT.name, found.source_step));
-            if found.stiffness.is_empty() {
-                send(Event::Declined(topics::PACKING_REPORT.name, found.source_step));
-            }
+            send(measured(&topics::PACKING_REPORT, found.source_step, &found.header));
         }
         while let Some((found, _)) = self.moduli.take_valid(bus)? {
-            send(Event::Measured(topics::MODULI.name, found.source_step));
+            send(measured(&topics::MODULI, found.source_step, &found.header));
         }
         while let Some((found, _)) = self.speeds.take_valid(bus)? {
-            send(Event::Measured(topics::WAVE_SPEEDS.name, found.source_step));
-            if found.source_step == 0 && found.header.stamp == stamp(0.0) {
-                send(Event::MeasuredStart);
-            }
+            send(measured(&topics::WAVE_SPEEDS, found.source_step, &found.header));
         }
-        while let Some((found, info)) = self.microstructures.take_valid(bus)? {
-            let member = member_of(&info.writer.participant());
+        while let Some((found, _)) = self.microstructures.take_valid(bus)? {
+            // The data say themselves that they have nothing to invert.
+            if found.estimates.is_empty() {
+                continue;
+            }
             let nothing = without_estimate(&found);
-            send(Event::Microstructure { source: found.source, step: found.source_step, member, nothing });
+            send(Event::Microstructure { source: found.source, step: found.source_step, nothing });
         }
         while let Some((message, _)) = self.reports.take_valid(bus)? {
             for report in Report::from_message(&message) {
-                let step_under = |key| report.health.value(key)?.parse().ok();
-                if let Some(step) = step_under(DECLINED_STEP) {
-                    send(Event::Declined(topics::WAVE_SPEEDS.name, step));
-                }
-                if let Some(step) = step_under(MEASURING) {
-                    send(Event::Probing(step));
-                }
                 if let Some(phase) = report.health.phase() {
                     send(Event::Phase(phase));
                     send(Event::Simulator(report.health.message.clone()));
@@ -234,6 +222,10 @@ impl RunSubscriptions {
         }
         Ok(())
     }
+}
+
+fn measured(topic: &Topic, step: u64, header: &Header) -> Event {
+    Event::Measured { topic: topic.name, step, has_first_stamp: header.stamp == stamp(0.0) }
 }
 
 fn watch(

@@ -24,7 +24,6 @@ pub struct PackingPictures {
 struct PicturePublisher {
     picture: Picture,
     publisher: PublisherId,
-    /// The packing that was shown last.
     shown: Option<SampleId>,
 }
 

@@ -92,7 +92,6 @@ impl Binding {
         }
     }
 
-    /// Numbers of messages left out, by participant and topic.
     pub(crate) fn ignored(&self) -> &BTreeMap<Participant, BTreeMap<&'static str, u64>> {
         &self.ignored
     }

@@ -45,14 +45,12 @@ impl OtherTopics {
     }
 }
 
-/// A topic to subscribe to.
 pub(crate) struct FoundTopic {
     /// With the QoS to ask for.
     pub(crate) topic: Topic,
     pub(crate) spec: TopicSpec,
 }
 
-/// Finds topics on the bus.
 #[derive(Default)]
 pub(crate) struct Finder {
     settings: OtherTopics,

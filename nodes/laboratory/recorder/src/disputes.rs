@@ -16,10 +16,8 @@ struct RunState {
     scene: u64,
 }
 
-/// The disputes of one run.
 #[derive(Debug, Default)]
 pub(crate) struct Disputes {
-    /// One line each.
     pub(crate) lines: Vec<String>,
     /// Fingerprint of the scene that is stored.
     scene: Option<u64>,

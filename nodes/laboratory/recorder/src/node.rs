@@ -94,9 +94,8 @@ pub struct Recorder {
     stepped: Option<Duration>,
     /// The recorder had no step for [`STALLED`]. It may have missed the last report of a process that left meanwhile.
     stalled: bool,
-    /// Finds topics outside the contract.
     finder: Option<Finder>,
-    /// Those topics, where they are not recorded.
+    /// Topics outside the contract that are not recorded.
     left_out: LeftOut,
 }
 

@@ -41,7 +41,6 @@ const LOOK_AROUND: Duration = Duration::from_millis(700);
 /// have not taken.
 const GRACE: Duration = Duration::from_millis(300);
 
-/// A topic and the name under which it is published.
 #[derive(Clone, Debug)]
 struct Remap {
     from: String,
@@ -110,7 +109,6 @@ pub struct Args {
     wait_for_subscribers: f64,
 }
 
-/// The name under which a topic is published.
 fn renamed<'a>(remaps: &'a [Remap], name: &'a str) -> &'a str {
     remaps.iter().find(|r| r.from == name).map_or(name, |r| &r.to)
 }
@@ -144,7 +142,6 @@ fn check_overrides(overrides: &QosOverrides, topics: &[(&str, &str)]) -> Result<
     Err(format!("--qos-profile-overrides-path: /{name} is not played; played are: {known}"))
 }
 
-/// Returns the time that an argument states in seconds.
 fn seconds(flag: &str, value: f64) -> Result<Duration, Failure> {
     let message = |_| Failure::usage(format!("--{flag} {value} is out of range: seconds, 0 or more"));
     Duration::try_from_secs_f64(value).map_err(message)
@@ -202,7 +199,6 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(if is_whole { Exit::Done } else { Exit::DataLoss })
 }
 
-/// The publishers of a playback, and the topics that are left out.
 struct Offered {
     publishers: TopicPublishers,
     left_out: Vec<String>,

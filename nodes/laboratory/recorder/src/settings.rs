@@ -79,7 +79,6 @@ impl Settings {
         })
     }
 
-    /// The directory to record into.
     pub(super) fn directory(&self) -> io::Result<PathBuf> {
         match (&self.output, &self.scene) {
             (Some(directory), _) => Ok(directory.clone()),

@@ -53,7 +53,6 @@ impl LeftOut {
         }
     }
 
-    /// A sentence on them, with what to do.
     pub(crate) fn sentence(&self) -> Option<String> {
         let names = self.0.iter().map(String::as_str).collect::<Vec<_>>();
         let list = names.join(", ");

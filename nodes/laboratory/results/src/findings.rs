@@ -175,7 +175,6 @@ mod tests {
     use grainlab_core::notes::{Note, Status};
     use grainlab_core::results::{Estimate, MicrostructureCovariance};
 
-    /// The result of a model with z ± its standard deviation.
     fn result(status: Status, z: Option<(f64, f64)>, reasons: &[&'static str]) -> Inference {
         let mut found = Estimate { model: "relaxed".to_owned(), status, ..Estimate::default() };
         found.notes = reasons.iter().map(|reason| Note::remark(*reason)).collect();

@@ -45,7 +45,6 @@ impl Identity {
     }
 }
 
-/// One set of data.
 #[derive(Debug)]
 struct Sent {
     identity: Identity,

@@ -63,7 +63,6 @@ pub fn inference_data(draws: &Draws, chains: usize, attributes: Map<String, Valu
     })
 }
 
-/// The draws in so many equal parts.
 fn by_chain(draws: &Draws, chains: usize) -> impl Iterator<Item = &[Draw]> {
     draws.draws.chunks((draws.draws.len() / chains.max(1)).max(1))
 }

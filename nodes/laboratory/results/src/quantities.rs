@@ -6,7 +6,6 @@ use grainlab_core::quantity::{Quantity, Shape, Value};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::collections::BTreeMap;
 
-/// Adds every quantity of `result` to a JSON object.
 pub(crate) fn entries<R, M: SerializeMap>(
     map: &mut M,
     table: &[Quantity<R>],

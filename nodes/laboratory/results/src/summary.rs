@@ -11,10 +11,8 @@ use std::collections::BTreeMap;
 /// A launched run.
 #[derive(Debug, Serialize)]
 pub struct Summary {
-    /// Data of the launcher.
     #[serde(flatten)]
     pub(crate) launched: Launched,
-    /// Processes whose messages were left out.
     pub(crate) strangers: Vec<StrangerView>,
     pub(crate) topics: Vec<TopicCount>,
     pub(crate) exchanges_per_second: Option<f64>,
@@ -156,7 +154,6 @@ pub struct Launched {
 
 #[cfg(test)]
 impl Summary {
-    /// Summary of a run that left nothing.
     pub(crate) fn of_nothing(exit: Exit) -> Self {
         Self::new(Launched { exit: exit.code(), ..Launched::default() }, ReadBack::default(), None)
     }

@@ -34,7 +34,6 @@ pub fn text(s: &Summary) -> String {
     text
 }
 
-/// The estimates of each model from one kind of data.
 fn inferred((origin, results): &(Origin, Vec<&Inference>)) -> String {
     let data = origin.data_and_node().unwrap_or_else(|| "data".to_owned());
     let table = inference_text::table(&results.iter().copied().cloned().collect::<Vec<_>>());

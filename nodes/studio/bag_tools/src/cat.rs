@@ -54,10 +54,7 @@ enum Format {
     Text,
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// If the recording cannot be read, a topic does not exist, or stdout fails.
+/// Errors if the recording cannot be read, a topic does not exist, or stdout fails.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let (recording, _) = args.messages.open(&args.path)?;
     let (selection, wanted) = args.excerpt.select(&recording)?;
@@ -110,7 +107,6 @@ struct Line<'a, D> {
     data: D,
 }
 
-/// Writes a message as one line of JSON.
 pub(crate) fn json(out: &mut impl Write, message: &Message, data: impl Serialize) -> io::Result<()> {
     let line = Line {
         topic: &message.channel.topic,

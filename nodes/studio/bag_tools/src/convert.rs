@@ -76,10 +76,7 @@ enum Format {
     Mcap,
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// If a recording cannot be read, a topic does not exist, topics contradict each other, or the output cannot be written.
+/// Errors if a recording cannot be read, a topic does not exist or contradicts another, or writing fails.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let is_recording =
         args.pictures || args.paths.len() > 1 || args.output.extension().is_some_and(|e| e == "mcap");
@@ -111,7 +108,6 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(worse(losses(from_ref(&recording)), decoders.losses()))
 }
 
-/// Writes the recording, and prints what is in it.
 fn recording(args: &Args) -> Result<Exit, Failure> {
     if args.output.extension().is_some_and(|e| ["csv", "json", "jsonl"].iter().any(|table| e == *table)) {
         return Err(Failure::usage(format!(

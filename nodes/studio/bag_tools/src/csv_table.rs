@@ -10,11 +10,9 @@ use std::path::Path;
 pub(crate) struct Columns {
     names: Vec<String>,
     shape: Shape,
-    /// Longest array that is written as columns.
     widest: usize,
 }
 
-/// A CSV file with a header, written row by row.
 pub(crate) struct CsvTable {
     writer: csv::Writer<Appended>,
     columns: Columns,

@@ -18,7 +18,6 @@ pub(crate) fn losses(recordings: &[Recording]) -> Exit {
     exit
 }
 
-/// The schemas of the channels, and what could not be decoded.
 #[derive(Default)]
 pub(crate) struct Decoders {
     /// By the address of the channel, which stays its own while it is in here.
@@ -53,7 +52,6 @@ pub(crate) fn schema_of(channel: &ChannelInfo) -> Result<Schema, String> {
 }
 
 impl Decoders {
-    /// The decoded message; `None` if it cannot be decoded.
     pub(crate) fn decode(&mut self, message: &grainlab_recordings::Message) -> Option<Message> {
         let channel = &message.channel;
         let known = self

@@ -45,10 +45,7 @@ pub struct Args {
     format: Format,
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// If a recording cannot be read, or has no topic that is asked for.
+/// Errors if a recording cannot be read, or has no topic that is asked for.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let both = [args.messages.open(&args.first)?.0, args.messages.open(&args.second)?.0];
     let topics = args.topics.check(&both)?;

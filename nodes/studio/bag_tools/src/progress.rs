@@ -5,7 +5,6 @@ use grainlab_msgs::Exit;
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
-/// The part of an interval of log time that is done.
 pub(crate) struct Progress {
     begin: Instant,
     signals: Signals,

@@ -53,7 +53,6 @@ impl Topics {
         !self.names.topics.is_empty() || self.names.regex.is_some() || !self.types.is_empty()
     }
 
-    /// True for a channel that is wanted.
     pub(crate) fn take(&self, channel: &ChannelInfo) -> bool {
         let short = channel.ros_type.replace("/msg/", "/");
         let is_one = |types: &[String]| types.iter().any(|t| *t == channel.ros_type || *t == short);
@@ -66,10 +65,7 @@ impl Topics {
         !self.types.is_empty()
     }
 
-    /// The topics of these recordings that are wanted.
-    ///
-    /// # Errors
-    /// If a name or type is in none of the recordings, or nothing is taken.
+    /// Errors if a name or type is in none of the recordings, or nothing is taken.
     pub(crate) fn check(&self, recordings: &[Recording]) -> Result<Self, Failure> {
         let channels: Vec<_> = recordings.iter().flat_map(Recording::all_channels).collect();
         let names = self.names.among(&channels.iter().map(|c| c.topic.as_str()).collect());

@@ -13,7 +13,6 @@ pub(crate) fn time_columns(is_field: impl Fn(&str) -> bool) -> [String; 2] {
     })
 }
 
-/// The shape of the values of a field.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Shape {
     /// A number, yes or no, or a text.

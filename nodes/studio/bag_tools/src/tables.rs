@@ -24,7 +24,6 @@ const BUFFER: (usize, usize) = (1 << 13, 1 << 21);
 /// Longest name of a file without number and extension: file systems take 255 bytes.
 const LONGEST_NAME: usize = 240;
 
-/// Formats of one file per topic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TableFormat {
     Json,
@@ -40,7 +39,6 @@ impl TableFormat {
     }
 }
 
-/// The files of a folder.
 pub(crate) struct Tables<'a> {
     /// Final name of the folder, for messages.
     name: &'a Path,
@@ -112,8 +110,7 @@ impl<'a> Tables<'a> {
         }
     }
 
-    /// Writes all selected messages. For CSV the recording is read twice: first for the lengths of
-    /// arrays.
+    /// Reads the recording twice for CSV: first for the lengths of arrays.
     pub(crate) fn convert(&mut self, recording: &Recording, selection: &Selection) -> Result<(), Failure> {
         if self.format == TableFormat::Csv {
             self.pass(recording, selection)?;

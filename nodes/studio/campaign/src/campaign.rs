@@ -201,7 +201,6 @@ fn flatten(table: &Table, place: &str, all: &mut Vec<Setting>) {
     }
 }
 
-/// The members in a table.
 fn table_of(path: &Path, common: &[Setting], folder: &Path) -> Result<Vec<Member>, Failure> {
     let fault = |why: String| Failure::usage(format!("table {}: {why}", path.display()));
     let (_, text) = separated::read(path).map_err(|e| Failure::new(e.exit, format!("table {e}")))?;

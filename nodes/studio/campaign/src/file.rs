@@ -94,7 +94,6 @@ pub(crate) enum Seeds {
 }
 
 impl Seeds {
-    /// The seeds, at most `most` of them.
     pub(crate) fn all(&self, most: usize) -> Vec<u64> {
         match self {
             Self::List(seeds) => seeds.iter().take(most).copied().collect(),

@@ -124,12 +124,10 @@ impl Folder {
         &self.root
     }
 
-    /// The directories of the runs.
     fn members(&self) -> PathBuf {
         self.root.join(MEMBERS)
     }
 
-    /// The output of each member.
     pub(crate) fn logs(&self) -> PathBuf {
         self.root.join(LOGS)
     }
@@ -214,12 +212,10 @@ impl Folder {
         (0..campaign.members.len()).filter(can_run).collect()
     }
 
-    /// The output of a member on this machine.
     pub(crate) fn log(&self, member: &Member) -> PathBuf {
         self.logs().join(log_name(member))
     }
 
-    /// Opens the output of a member, to be continued.
     pub(crate) fn open_log(&self, member: &Member) -> io::Result<File> {
         append_in(&self.logs(), &log_name(member))
     }
@@ -229,7 +225,6 @@ impl Folder {
         self.logs().join(format!("{}.failed", member.name))
     }
 
-    /// Gives up a member that ended so again and again.
     pub(crate) fn give_up(&self, member: &Member) -> Result<(), Failure> {
         let RunState::Ended(code) = run_state(&self.run(member)) else { return Ok(()) };
         self.fail(member, code, "")
@@ -241,7 +236,6 @@ impl Folder {
         replace_whole(&path, format!("{code}\n{limit}\n")).map_err(Failure::at(&path))
     }
 
-    /// The limit that a member reached.
     fn limit(&self, member: &Member) -> Option<String> {
         let text = input::text(&self.given_up(member), input::SETTINGS).ok()?;
         text.lines().nth(1).filter(|line| !line.is_empty()).map(str::to_owned)
@@ -258,7 +252,6 @@ impl Folder {
         }
     }
 
-    /// Removes the run of a member.
     pub(crate) fn remove(&self, member: &Member) -> Result<(), Failure> {
         let run = self.run(member);
         let _ = std::fs::remove_file(self.given_up(member));
@@ -321,10 +314,8 @@ fn refuse_others(root: &Path, campaign: &Campaign) -> Result<(), Failure> {
     )))
 }
 
-/// Name of the folder of the runs.
 const MEMBERS: &str = "members";
 
-/// Name of the folder of the output of the runs.
 const LOGS: &str = "logs";
 
 /// Name of the copy of the file of the campaign.

@@ -8,7 +8,6 @@ use std::time::{Duration, Instant};
 pub(crate) struct Progress {
     members: usize,
     done: usize,
-    /// Members that were done before.
     before: usize,
     failed: usize,
     running: usize,
@@ -18,7 +17,6 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// A progress of so many members, of which some are finished and some failed before.
     pub(crate) fn new(members: usize, done: usize, failed: usize) -> Self {
         let style = ProgressStyle::with_template("{bar:30} {pos} of {len}{msg}");
         let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
@@ -78,7 +76,6 @@ impl Progress {
         self.bar.set_message(format!("{failed}, {} running{}", self.running, self.left()));
     }
 
-    /// The time left at the present pace.
     fn left(&self) -> String {
         let ended = self.done + self.failed - self.before;
         let open = self.members - self.done - self.failed;

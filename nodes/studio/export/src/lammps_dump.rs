@@ -21,7 +21,6 @@ pub(crate) fn ids(packing: &Packing) -> Vec<u64> {
     packing.ids.iter().map(|id| u64::from(*id) + first).collect()
 }
 
-/// The number of contacts of each grain.
 pub(crate) fn coordination(packing: &Packing) -> Vec<u32> {
     let mut contacts = vec![0; packing.grains()];
     for grain in packing.contacts.iter().flat_map(|c| [c.i, c.j]) {

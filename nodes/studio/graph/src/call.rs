@@ -7,19 +7,15 @@ use ros2_client::qos::{History, WhenFull};
 use ros2_client::{Client, Message, Name, QosProfile, ServiceMapping, ServiceTypeName};
 use std::time::{Duration, Instant};
 
-/// Period at which an answer is looked for.
 const POLL_PERIOD: Duration = Duration::from_millis(2);
 
 /// Time after which a request is sent again: the server may have discovered this process's reader after its request.
 const REPEAT_PERIOD: Duration = Duration::from_millis(500);
 
-/// Time limit for an answer.
 const TIME_LIMIT: Duration = Duration::from_secs(10);
 
 /// Sends a request to the service, of the type `kind` of `rcl_interfaces`, until its answer arrives.
-///
-/// # Errors
-/// If there is no such service or more than one, or none answers within 10 s.
+/// Errors if there is no such service or more than one, or none answers within 10 s.
 pub(crate) fn call<Req: Message + Clone + 'static, Resp: Message + 'static>(
     observer: &mut Observer,
     graph: &Graph,

@@ -15,7 +15,6 @@ pub(crate) struct Endpoint {
     pub(crate) name: RosName,
     /// As in `grainlab_msgs/msg/Stress`.
     pub(crate) type_name: String,
-    /// It writes, else it reads.
     pub(crate) writes: bool,
     pub(crate) qos: QosProfile,
     /// `RIHS01_…`, or empty if it is not announced.
@@ -57,7 +56,6 @@ pub(crate) struct NodeEntry {
     pub(crate) endpoints: BTreeSet<Guid>,
 }
 
-/// Participants, nodes and endpoints of a domain.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Graph {
     pub(crate) nodes: Vec<NodeEntry>,

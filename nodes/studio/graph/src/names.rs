@@ -13,7 +13,6 @@ pub(crate) enum RosName {
 }
 
 impl RosName {
-    /// From the name of a DDS topic.
     pub(crate) fn of(dds: &str) -> Self {
         let dds = escape_name(dds);
         let dds = dds.as_ref();

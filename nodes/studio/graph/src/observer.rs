@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// Period at which discovery is looked at.
 const POLL_PERIOD: Duration = Duration::from_millis(20);
 
 /// Time without a change after which the graph counts as complete, and after which that of one name does once it is there.

@@ -31,7 +31,6 @@ pub struct Common {
 }
 
 impl Common {
-    /// The graph of the domain of the environment.
     pub(crate) fn graph(&self) -> Result<Graph, Failure> {
         self.graph_with(|_| false)
     }
@@ -45,7 +44,6 @@ impl Common {
         std::time::Duration::from_secs_f64(self.spin_time)
     }
 
-    /// Prints the value as JSON, or as this text.
     pub(crate) fn show<T: Serialize + ?Sized>(
         &self,
         value: &T,
@@ -55,7 +53,6 @@ impl Common {
     }
 }
 
-/// Prints the value as JSON, or as this text.
 pub(crate) fn shown<T: Serialize + ?Sized>(
     format: OutputFormat,
     value: &T,

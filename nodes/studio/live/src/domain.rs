@@ -34,7 +34,6 @@ impl Choice {
         }
     }
 
-    /// Awaited run, in words.
     pub(crate) fn awaited(&self) -> String {
         if self.is_set {
             format!("in DDS domain {}", self.network.domain)

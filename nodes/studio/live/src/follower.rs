@@ -26,7 +26,6 @@ const FORGOTTEN: Duration = Duration::from_secs(5);
 /// Silence after which another run is followed instead.
 const ABANDONED: Duration = Duration::from_secs(15);
 
-/// A reader of the bus, and the run that it follows.
 pub(crate) struct Follower {
     bus: DdsBus,
     clock: Instant,
@@ -73,7 +72,6 @@ impl Follower {
         })
     }
 
-    /// Waits for a message, at most this time.
     pub(crate) fn wait(&mut self, time: Duration) {
         let patience = self.packings.patience(self.bus.now());
         self.bus.wait(time.min(patience));
@@ -99,7 +97,6 @@ impl Follower {
         self.others.len()
     }
 
-    /// Takes all messages that have arrived.
     pub(crate) fn take(&mut self, laboratory: &mut Option<Laboratory>) -> Result<(), BusError> {
         let now = self.now();
         while let Some((message, info)) = self.run_state.take_valid(&mut self.bus)? {

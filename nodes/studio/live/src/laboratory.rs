@@ -26,7 +26,6 @@ const ESTIMATES: usize = 64;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum End {
-    /// The loading path is done.
     Complete,
     Early(String),
     /// The simulator has left without a report of the end.
@@ -42,15 +41,13 @@ pub struct Laboratory {
     pub(crate) timeline: Timeline,
     pub(crate) latest: Option<ServoRequest>,
     pub(crate) state: Option<msg::RunState>,
-    /// The last measured packing.
     pub(crate) report: Option<PackingReport>,
     /// The estimates from one packing, with its step.
     pub(crate) inferred: (u64, Vec<Inference>),
     pub(crate) grains: Option<u32>,
     pub(crate) steps: Pace<RATE_WINDOW>,
-    /// The phase under way.
     pub(crate) of_phase: PhaseReport,
-    /// The share of that phase.
+    /// The share of the phase under way.
     pub(crate) pace: Pace<PHASE_WINDOW>,
     pub(crate) end: Option<End>,
     /// When it was first heard of.
@@ -154,7 +151,6 @@ impl Laboratory {
         }
     }
 
-    /// Takes a report of the simulator.
     pub(crate) fn simulator(&mut self, report: &Report, now: Duration) {
         self.heard = now;
         let health = &report.health;
@@ -184,7 +180,6 @@ impl Laboratory {
         self.end.get_or_insert(End::Vanished);
     }
 
-    /// Time since the simulator was heard.
     pub(crate) fn silence(&self, now: Duration) -> Duration {
         now.saturating_sub(self.heard)
     }

@@ -87,29 +87,24 @@ fn log_level(ros: &RosArgs) -> log::LevelFilter {
     if ros.log_level == RosArgs::default().log_level { log::LevelFilter::Warn } else { ros.log_level }
 }
 
-/// State that was drawn last.
 #[derive(Default)]
 struct Drawn {
     /// When the run was first heard of.
     began: Option<Duration>,
-    /// Snapshots so far.
     count: u64,
     /// Number of values in the curves, and step of the last measured packing.
     values: (usize, Option<u64>),
     /// Plots of small shear components that were shown, and stay.
     plots: BTreeSet<&'static str>,
-    /// Number of packings in the pictures.
     pictured: u64,
     /// Version of the pictures, of all runs.
     version: u64,
 }
 
-/// The page as browsers see it.
 struct Show {
     server: Server,
     choice: Choice,
     clock: Instant,
-    /// The domain joined last.
     domain: u16,
     snapshot: Snapshot,
     drawn: Drawn,

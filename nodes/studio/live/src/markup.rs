@@ -49,7 +49,6 @@ fn target_pressure(request: &ServoRequest) -> Option<f64> {
 }
 
 impl Laboratory {
-    /// The key values now.
     pub(crate) fn cards(&self) -> Html {
         let request = self.latest.as_ref();
         let value = |of: fn(&ServoRequest) -> f64, digits| fixed(request.map(of), digits);
@@ -87,7 +86,6 @@ impl Laboratory {
         all.into_iter().collect()
     }
 
-    /// Each component with what is imposed on it.
     pub(crate) fn targets(&self) -> Html {
         let Some(r) = &self.latest else { return paragraph("No stress has been published yet.") };
         let (stress, strain) = (r.input.stress.voigt(), r.strain.voigt());
@@ -116,7 +114,6 @@ impl Laboratory {
         table("The servo, now", header, (0..6).map(row))
     }
 
-    /// Moduli and microstructure of the last measured packing.
     pub(crate) fn structure(&self) -> Html {
         let Some(report) = &self.report else {
             return paragraph("No packing has been measured yet: at the states set in the scene.");

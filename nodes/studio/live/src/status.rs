@@ -19,7 +19,6 @@ pub(crate) fn waiting(awaited: &str, off_the_bus: Option<String>) -> Html {
 }
 
 impl Laboratory {
-    /// Run and its state.
     pub(crate) fn heading(&self, domain: u16, others: usize, now: Duration) -> Html {
         let run = self.run.map_or_else(|| "started by hand".to_owned(), |run| format!("run {run}"));
         let name = if self.scene.is_empty() { "A run" } else { &self.scene };

@@ -69,7 +69,6 @@ impl FromIterator<Html> for Html {
     }
 }
 
-/// Text without markup.
 pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

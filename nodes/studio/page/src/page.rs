@@ -6,7 +6,6 @@ use serde::Serialize;
 
 /// Style of all pages, in addition to [`page_style`].
 const STYLE: &str = include_str!("../assets/page.css");
-/// Scripts of all pages: theme, saved plots and data, sorted tables; values and parts of plots.
 const SCRIPTS: [&str; 2] = [include_str!("../assets/page.js"), include_str!("../assets/plots.js")];
 
 /// A part of a page, to which its navigation leads.

@@ -44,7 +44,6 @@ impl Figure {
         Strip { figure: self, ..Strip::default() }.svg()
     }
 
-    /// The axes within a frame.
     fn ranges(&self, [left, top, right, bottom]: labels::Area) -> [Range; 2] {
         let points = || self.series.iter().flat_map(|s| &s.points);
         [
@@ -53,7 +52,6 @@ impl Figure {
         ]
     }
 
-    /// Draws the series and their labels.
     fn draw(&self, drawing: &mut Drawing, [x, y]: [&Range; 2]) {
         let frame = drawing.frame();
         let drawable = |p: &&Point| x.has(p.x) && y.has(p.y);

@@ -9,7 +9,6 @@ use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// Period at which signals are looked for.
 const POLL_PERIOD: Duration = Duration::from_millis(50);
 
 /// The threads, and the process that has them: a forked child has none. A fork has the interpreter lock, as has who locks this.

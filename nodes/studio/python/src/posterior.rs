@@ -6,7 +6,6 @@ use numpy::ndarray::{Array2, Array3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Number of chains of independent draws.
 pub(crate) const CHAINS: usize = 4;
 
 /// Keyword arguments of `arviz.from_dict`: arrays of shape (chains, draws) or (chains, draws, moduli).

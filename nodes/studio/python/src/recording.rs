@@ -202,7 +202,6 @@ struct Decoder {
 }
 
 impl Decoder {
-    /// The next message and the schema to decode it by.
     fn next(&mut self) -> PyResult<Option<(grainlab_recordings::Message, Arc<Schema>)>> {
         let Some(message) = self.stream.next()? else { return Ok(None) };
         let schema = match self.schemas.get(&message.channel.topic) {

@@ -14,7 +14,6 @@ const MS: f64 = 1e3;
 /// Share of the largest component below which shear components are not drawn.
 const SMALL: f64 = 0.01;
 
-/// One curve or set of points.
 struct Curve {
     name: String,
     colour: usize,
@@ -22,7 +21,6 @@ struct Curve {
     points: Vec<(f64, f64)>,
     /// Points instead of a line.
     marked: bool,
-    /// A thin line.
     faint: bool,
 }
 
@@ -38,7 +36,6 @@ impl Curve {
     }
 }
 
-/// A plot before it is drawn.
 struct Plot {
     id: &'static str,
     title: &'static str,

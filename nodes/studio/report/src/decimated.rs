@@ -1,6 +1,5 @@
 //! A long series with few points, made while the series is read.
 
-/// A point of a series: time and value.
 type TimedValue = (f64, f64);
 
 /// A series as the extremes of bins of equal width in time, with at most four points each: first, least, greatest and last.
@@ -74,7 +73,6 @@ impl Decimated {
         if self.width > 0.0 { ((time - self.start) / self.width) as usize } else { 0 }
     }
 
-    /// Joins pairs of bins.
     fn halve(&mut self) {
         let join = |pair: &[Option<Bin>]| match *pair {
             [Some(a), Some(b)] => Some(a.and(b)),
@@ -86,7 +84,6 @@ impl Decimated {
         self.width *= 2.0;
     }
 
-    /// Number of values that were added.
     pub(crate) fn count(&self) -> usize {
         self.count
     }

@@ -60,7 +60,6 @@ pub(crate) fn section(phases: &[EnergyBalance]) -> Option<Html> {
     Some(grid(figure) + balance(phases))
 }
 
-/// One row per phase.
 fn balance(phases: &[EnergyBalance]) -> Html {
     let columns = DISSIPATED.map(|(name, _)| name);
     let header =

@@ -7,7 +7,6 @@ use grainlab_results::AcousticReport;
 use std::collections::BTreeSet;
 
 impl Run {
-    /// Counts and warnings.
     pub(crate) fn health(&self) -> Html {
         let s = &self.summary;
         let of_topics = |total: u64| (!s.topics.is_empty()).then(|| total.to_string());
@@ -49,7 +48,6 @@ impl Run {
         )
     }
 
-    /// Everything that readers of the numbers should know.
     fn warnings(&self) -> Html {
         let mut seen = BTreeSet::new();
         let of_states = self.states.iter().flat_map(|s| {
@@ -67,7 +65,6 @@ impl Run {
         if lines.is_empty() { paragraph("No warnings.") } else { lines }
     }
 
-    /// Commands, versions, and the text of the scene.
     pub(crate) fn repeat(&self) -> Html {
         let folder = grainlab_results::brief::quoted(&self.directory.display().to_string());
         let scene = grainlab_results::brief::quoted(&self.directory.join("scene.toml").display().to_string());

@@ -122,7 +122,6 @@ fn of_best(best: Option<&Inference>, by: String) -> impl Iterator<Item = Cell> {
     cells.chain([Cell::text(by)])
 }
 
-/// A model with its status.
 fn model(e: &Inference) -> String {
     format!("{} ({})", e.model, e.status)
 }
@@ -132,7 +131,6 @@ fn symbols() -> impl Iterator<Item = &'static str> + Clone {
 }
 
 impl Run {
-    /// Inferred against counted, of the last state, and all states as a table.
     pub(crate) fn inferred(&self) -> Html {
         let Some(state) = self.last() else { return paragraph("No packing was measured.") };
         let results = judged(state);
@@ -191,7 +189,6 @@ impl Run {
         table("Inferred from data of no packing of the run", header, rows)
     }
 
-    /// The measured states, one a row.
     pub(crate) fn states_table(&self) -> Html {
         let measured =
             ["phase", "p, kPa", "φ"].into_iter().chain(symbols()).chain(["G12, MPa", "G13, MPa", "Θ, MPa"]);

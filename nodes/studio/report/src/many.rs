@@ -18,7 +18,6 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Found instead of figures over settings.
 const MANY_SETTINGS: &str = "They differ in more than two settings: for figures over settings, report those that differ in one or two.";
 
-/// What the table shows.
 const ABOUT_TABLE: &str = "The last packing of each run; errors are inferred less counted. Marked: outliers among six or more runs with the same \
                            settings. Click a header to sort.";
 
@@ -71,7 +70,6 @@ fn distinct<T: Ord>(values: impl Iterator<Item = T>) -> Vec<T> {
     values.collect::<BTreeSet<T>>().into_iter().collect()
 }
 
-/// Says how many runs are complete, in what they differ, and which states count.
 fn done(runs: &[&Run], states: &[&InvertedPacking], scenes: &[String], varied: &[Setting]) -> String {
     let reports = || states.iter().map(|state| &state.packing.report);
     let complete = runs.iter().filter(|run| run.is_complete()).count();
@@ -94,7 +92,6 @@ fn done(runs: &[&Run], states: &[&InvertedPacking], scenes: &[String], varied: &
     done
 }
 
-/// Returns reasons to doubt the states, and the numbers of runs and values that are not as they should be.
 fn doubts(runs: &[&Run], states: &[&InvertedPacking], numbers: &[Vec<Number>]) -> Vec<String> {
     let incomplete = runs.iter().filter(|run| !run.is_complete()).count();
     let warned = runs.iter().filter(|run| !run.summary.warnings.is_empty()).count();
@@ -110,7 +107,6 @@ fn doubts(runs: &[&Run], states: &[&InvertedPacking], numbers: &[Vec<Number>]) -
     doubts
 }
 
-/// Says how a run ended.
 fn end(run: &Run) -> String {
     let summary = &run.summary;
     match summary.exit {
@@ -126,7 +122,6 @@ fn end(run: &Run) -> String {
     }
 }
 
-/// Returns the table of runs, with the same as CSV.
 fn runs_table(runs: &[&Run], links: &[&str], varied: &[Setting], numbers: &[Vec<Number>]) -> Html {
     let mut header = ["no", "run", "scene", "seed"].map(str::to_owned).to_vec();
     header.extend(varied.iter().map(Setting::header));
@@ -164,7 +159,6 @@ fn runs_table(runs: &[&Run], links: &[&str], varied: &[Setting], numbers: &[Vec<
     )
 }
 
-/// Returns the settings in which two runs differ, and their numbers side by side.
 fn side_by_side(runs: [&Run; 2], numbers: [&[Number]; 2]) -> Html {
     let scenes = runs.map(|run| keys(&run.scene_text));
     let settings = distinct(scenes.iter().flat_map(BTreeMap::keys)).into_iter().filter_map(|key| {

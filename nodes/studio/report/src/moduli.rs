@@ -19,7 +19,6 @@ type Kind = (&'static str, usize, [f64; 6]);
 const NAMES: [&str; 6] = ["G12", "G13", "Θ", "C11", "C33", "C13"];
 
 impl Run {
-    /// Relaxed and affine moduli.
     pub(crate) fn moduli(&self) -> Html {
         let Some(report) = self.last().map(|s| &s.packing.report) else {
             return paragraph("No packing was measured.");

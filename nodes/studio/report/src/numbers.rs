@@ -10,7 +10,6 @@ use grainlab_results::brief::moduli;
 use grainlab_results::findings::recommended;
 use std::collections::BTreeMap;
 
-/// A number of a run.
 pub(crate) struct Number {
     /// Header of its column.
     pub(crate) name: String,
@@ -47,7 +46,6 @@ impl Number {
     }
 }
 
-/// How a number is written.
 #[derive(Clone, Copy)]
 enum Form {
     /// With this number of decimal places.

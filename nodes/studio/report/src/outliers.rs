@@ -41,7 +41,6 @@ impl Outliers {
         if off.abs() <= LEAST * self.median.abs() { 0.0 } else { off / (TO_SIGMA * self.deviation) }
     }
 
-    /// True for an outlier.
     pub(crate) fn has(&self, value: f64) -> bool {
         self.score(value).abs() > self.limit
     }

@@ -22,7 +22,6 @@ const MUCH: f64 = 3.0;
 /// Most curves that are described in sentences.
 const DESCRIBED: usize = 3;
 
-/// A run, and its quantities by name.
 pub(crate) type Quantities<'a> = (&'a Run, Vec<(String, Option<f64>)>);
 
 /// Runs over the setting with most numbers, with a curve for each value of the other one.
@@ -37,7 +36,6 @@ pub(crate) struct OverSettings<'a> {
     kept: Vec<usize>,
     places: Vec<f64>,
     curves: Vec<String>,
-    /// Number of runs that are left out.
     left_out: usize,
 }
 
@@ -80,7 +78,6 @@ impl<'a> OverSettings<'a> {
         here.filter_map(move |n| Some((self.whole[*n].0.seed(), self.whole[*n].1[quantity].1?)))
     }
 
-    /// Means of a quantity over seeds along a curve.
     fn means(&self, quantity: usize, curve: &str) -> Vec<(f64, Mean)> {
         let mean =
             |at: &f64| Some((*at, Mean::of(self.values(quantity, curve, *at).map(|(_, value)| value))?));
@@ -117,7 +114,6 @@ impl<'a> OverSettings<'a> {
         self.curves.iter().take(DESCRIBED).filter_map(sentence).collect()
     }
 
-    /// A figure for each quantity: means with standard errors.
     pub(crate) fn figures(&self) -> Html {
         let (along, by) = (self.along.header(), self.by.as_ref().map_or_else(String::new, Setting::header));
         let is_log = self.places[0] > 0.0 && self.places[self.places.len() - 1] >= DECADE * self.places[0];

@@ -70,7 +70,6 @@ impl Run {
         self.timeline.path.figures(after + self.timeline.first_phase())
     }
 
-    /// Scene, end and key results of the run.
     fn heading(&self) -> Html {
         let about = self.scene.as_ref().map_or("", |s| s.description.as_str());
         let words = self.launched.as_deref().unwrap_or_default();
@@ -152,7 +151,6 @@ impl Run {
     }
 }
 
-/// The key results of a state.
 fn cards(state: &InvertedPacking) -> Html {
     let r = &state.packing.report;
     let best = recommended(state);

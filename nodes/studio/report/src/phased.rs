@@ -18,13 +18,11 @@ pub(crate) struct Phased {
     parts: Vec<(u32, Decimated)>,
 }
 
-/// Bins of each phase of a run of about this number of phases.
 pub(crate) fn bins_of(phases: usize) -> usize {
     (BINS / phases.max(1)).clamp(FEWEST, BINS / 2)
 }
 
 impl Phased {
-    /// Adds a value of a phase, which has this number of bins.
     pub(crate) fn push(&mut self, (phase, bins): (u32, usize), time: f64, value: f64) {
         let is_other = self.parts.last().is_none_or(|(known, _)| *known != phase);
         if is_other && self.parts.len() < MOST_PHASES {

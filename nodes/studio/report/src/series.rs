@@ -32,7 +32,6 @@ pub struct InferredSample<'a> {
 }
 
 impl InferredSample<'_> {
-    /// True if a speed was measured at this pressure.
     fn is_measured(&self, pressure: f64) -> bool {
         let is_here = |p: f64| (p - pressure).abs() <= SAME_PRESSURE * pressure;
         self.series.rows.iter().any(|row| row.speed.is_some() && is_here(row.pressure))
@@ -65,7 +64,6 @@ fn kilopascals(pressure: f64) -> f64 {
     format!("{:.3e}", pressure / 1e3).parse().unwrap_or(f64::NAN)
 }
 
-/// The findings about a sample.
 fn found(sample: &InferredSample<'_>) -> Html {
     let InferredSample { series, estimate: e, doubts, .. } = sample;
     let kpa = |p: f64| format!("{} kPa", kilopascals(p));
@@ -116,7 +114,6 @@ fn lower_end(p: &PressureEstimate) -> Option<String> {
     (p.z_beyond > OPEN).then(|| format!("{:.2} or more", p.z.low))
 }
 
-/// Name of the file of a figure of a sample.
 fn file(n: usize, sample: &InferredSample<'_>, figure: &str) -> String {
     let name = slug(sample.name);
     match (name.is_empty(), n) {

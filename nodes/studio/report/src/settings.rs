@@ -8,7 +8,6 @@ use toml::{Table, Value};
 /// Keys of a scene that change nothing in it but the random numbers.
 const NO_SETTINGS: [&str; 3] = ["name", "description", "seed"];
 
-/// A setting with its value in each run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Setting {
     /// Key of the scene; of several with the same values, the last parts of all.
@@ -33,12 +32,10 @@ impl Setting {
         self.unit = if is_stress { "kPa" } else { "" };
     }
 
-    /// Name and unit, of a column or an axis.
     pub(crate) fn header(&self) -> String {
         [&*self.name, self.unit].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
     }
 
-    /// A value with the unit.
     pub(crate) fn of(&self, value: impl Display) -> String {
         format!("{value} {}", self.unit).trim_end().to_owned()
     }
@@ -68,7 +65,6 @@ impl Setting {
         self.values.iter().map(|v| v.parse().ok().filter(|v: &f64| v.is_finite())).collect()
     }
 
-    /// Number of different values.
     pub(crate) fn different(&self) -> usize {
         self.values.iter().collect::<BTreeSet<_>>().len()
     }

@@ -10,14 +10,12 @@ const MOST: usize = 4096;
 #[derive(Debug, Default)]
 pub(crate) struct StressPath {
     points: Vec<(u32, [f64; 3])>,
-    /// Number of exchanges so far.
     seen: usize,
     /// Exponent of 2: of how many exchanges one is kept.
     thinned: u32,
 }
 
 impl StressPath {
-    /// Takes an exchange.
     pub(crate) fn push(&mut self, phase: u32, of: [f64; 3]) {
         if self.seen.is_multiple_of(1 << self.thinned) {
             self.points.push((phase, of));

@@ -62,7 +62,6 @@ fn rose(id: &str, title: &str, caption: &str, colour: usize, found: &Oriented, a
 }
 
 impl Run {
-    /// Roses and the distribution of forces.
     pub(crate) fn structure(&self) -> Html {
         let Some(state) = self.last() else { return paragraph("No packing was measured.") };
         let report = &state.packing.report;
@@ -105,7 +104,6 @@ impl Run {
     }
 }
 
-/// The distribution of normal forces.
 fn forces(report: &PackingReport) -> Option<Html> {
     let forces = report.contacts.forces.as_ref()?;
     let total: u32 = forces.histogram.iter().sum();

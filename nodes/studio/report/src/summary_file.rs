@@ -3,7 +3,6 @@
 use grainlab_results::{NodeEnd, TopicCount};
 use serde::Deserialize;
 
-/// End of a run, and counts of its messages.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default)]
 pub(crate) struct SummaryFile {
@@ -25,7 +24,6 @@ pub(crate) struct SummaryFile {
 }
 
 impl SummaryFile {
-    /// Sum of a count over all topics.
     pub(crate) fn total(&self, count: fn(&TopicCount) -> u64) -> u64 {
         self.topics.iter().map(count).sum()
     }

@@ -19,7 +19,6 @@ const STRUCTURES: usize = 4096;
 /// A run against simulated time, s, in bounded memory.
 #[derive(Debug, Default)]
 pub struct Timeline {
-    /// Bins of each phase.
     bins: usize,
     /// Pa, in the order of Voigt.
     pub(crate) stress: [Phased; 6],
@@ -37,18 +36,14 @@ pub struct Timeline {
     pub(crate) unbalanced: Phased,
     /// Number and first time of each phase, in order.
     pub(crate) phases: Vec<(u32, f64)>,
-    /// Names of phases.
     pub(crate) names: BTreeMap<u32, String>,
     /// Last time, s.
     pub(crate) end: f64,
     /// Measured packings: time, z and ε.
     pub(crate) fabrics: Vec<Structure>,
-    /// The packings, for pictures.
     pub(crate) film: Film,
-    /// Energy balances, by phase.
     pub(crate) energy: Vec<msg::EnergyBalance>,
     pub(crate) last: Option<Packing>,
-    /// Messages that could not be read.
     pub(crate) unreadable: usize,
     /// Sign that the recording is of several runs: then it was not read to its end.
     pub(crate) several_runs: Option<RunSign>,
@@ -58,7 +53,6 @@ pub struct Timeline {
     from_zero: bool,
 }
 
-/// The structure of a packing at a time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Structure {
     pub(crate) time: f64,
@@ -73,7 +67,6 @@ impl Timeline {
         Self { bins: bins_of(phases), ..Self::default() }
     }
 
-    /// Reads the recording of a run of this number of phases.
     pub(crate) fn read(recording: &Recording, phases: usize) -> Result<Self, Failure> {
         let wanted =
             [topics::STRESS, topics::PACKING_REPORT, topics::PACKING, topics::RUN_STATE, topics::ENERGY];

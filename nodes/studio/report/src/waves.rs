@@ -11,7 +11,6 @@ use std::collections::BTreeSet;
 /// Most measurements of one packing that are drawn.
 const MOST_DRAWN: usize = 8;
 
-/// Modes by particle motion.
 const MODES: [&str; 3] = ["P", "S along the axis", "S across it"];
 
 /// Index into [`MODES`].
@@ -51,7 +50,6 @@ impl Run {
     }
 }
 
-/// The speeds of one measurement, drawn, and their medium.
 fn of_measurement(n: usize, acoustic: &AcousticReport, stiffness: Option<&Stiffness>) -> Html {
     let which = acoustic.measurement.as_ref().map_or_else(String::new, |m| format!(", {}", m.label));
     let axis = acoustic.medium.axis;

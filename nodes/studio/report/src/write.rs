@@ -47,7 +47,6 @@ pub fn default_page(path: PathBuf) -> Result<PathBuf, Failure> {
     Err(Failure::usage(fault))
 }
 
-/// Returns true for a file that is a page of grainlab.
 fn is_page(file: &Path) -> bool {
     let mut head = Vec::new();
     // A pipe would block.

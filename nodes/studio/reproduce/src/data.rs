@@ -8,7 +8,6 @@ use grainlab_page::Dataset;
 use serde_json::{Value, json as object};
 use std::collections::BTreeMap;
 
-/// A column: its name, and its value in a row.
 type Column = (&'static str, fn(&Comparison) -> Cell);
 
 const COLUMNS: [Column; 12] = [

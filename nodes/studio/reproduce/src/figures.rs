@@ -10,7 +10,6 @@ use grainlab_page::{Html, csv, figure, html, six_digits};
 /// Values of one sample at each pressure, with standard errors.
 type Values = [Option<(f64, Option<f64>)>; PRESSURES];
 
-/// One curve of every plot of a figure.
 struct Curve<'a> {
     name: &'static str,
     colour: Option<usize>,
@@ -49,7 +48,6 @@ impl Reproduction {
         Curve { name, colour: Some(colour), marker, hollow: false, values: Box::new(values) }
     }
 
-    /// Counted here, and inferred by the two models.
     fn counted_and_inferred(&self, quantity: Quantity, value: fn(&Row) -> Option<Mean>) -> Vec<Curve<'_>> {
         let (ratio, relaxed) = (("ratio", Some("total"), "paper"), ("relaxed", None, "grainlab"));
         let counted = self.simulated(quantity, 1.0, "counted");

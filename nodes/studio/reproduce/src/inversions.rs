@@ -11,7 +11,6 @@ fn errors(found: Option<&Errors>, digits: usize) -> [Cell; 2] {
 }
 
 impl Reproduction {
-    /// The command that prints the errors of the models.
     pub(crate) fn judge_command(&self) -> String {
         let folder = &self.provenance.folder;
         format!("grainlab invert --table {folder}/states.csv --judge --gamma all --error {ERROR}")

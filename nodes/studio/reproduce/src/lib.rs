@@ -54,7 +54,6 @@ impl Reproduction {
         Self { provenance, states, compared, judged, claims }
     }
 
-    /// The errors of a model with a γ/Δ and constants.
     fn judged(&self, model: &str, gamma: Option<&str>, calibration: &str) -> Option<&Judged> {
         Judged::find(&self.judged, model, gamma, calibration)
     }

@@ -65,7 +65,6 @@ impl Reproduction {
         page.text()
     }
 
-    /// Findings of the reproduction.
     fn found(&self) -> Html {
         let p = &self.provenance;
         let count = |verdict| self.claims.iter().filter(|c| c.verdict == verdict).count();

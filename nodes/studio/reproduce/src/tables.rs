@@ -5,13 +5,11 @@ use crate::paper::{Comparison, Mean, PAPER, PRESSURE, Quantity, States};
 use grainlab_emt::Modulus;
 use grainlab_page::{Cell, Html, code, fixed, html, plus_minus, signed, table};
 
-/// A mean with its error, in `scale`.
 pub(crate) fn mean(m: Option<&Mean>, scale: f64, digits: usize) -> Cell {
     let error = plus_minus(m.and_then(|m| m.error).map(|e| e / scale), digits);
     Cell::number(fixed(m.map(|m| m.value / scale), digits) + &error)
 }
 
-/// A number of the paper.
 pub(crate) fn of_paper(text: String) -> Cell {
     Cell::classed(text, "n p")
 }

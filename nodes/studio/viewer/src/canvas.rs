@@ -16,7 +16,6 @@ pub enum Ground {
 }
 
 impl Ground {
-    /// Colour of texts and lines.
     fn ink(self) -> Colour {
         match self {
             Self::Light => [40, 40, 46],
@@ -34,7 +33,6 @@ impl Ground {
     }
 }
 
-/// Pixels of a picture.
 #[derive(Clone, Debug)]
 pub(crate) struct Canvas {
     pub(crate) width: usize,
@@ -46,7 +44,6 @@ pub(crate) struct Canvas {
 }
 
 impl Canvas {
-    /// These pixels on a ground.
     pub(crate) fn new(
         [width, height]: [usize; 2],
         ground: Ground,

@@ -15,7 +15,6 @@ use serde::Serialize;
 /// Data for the script in addition to the bytes.
 #[derive(Debug, Serialize)]
 pub(crate) struct About<'a> {
-    /// Name of saved pictures.
     name: &'a str,
     grains: usize,
     /// Description of the part that is drawn, if that is not all.
@@ -53,7 +52,6 @@ fn count_up(view: &View) -> bool {
     view.ids.iter().enumerate().all(|(n, id)| *id == view.ids[0].wrapping_add(n as u32))
 }
 
-/// True for states that need ids.
 fn has_ids(views: &[&View]) -> bool {
     views.iter().any(|v| !count_up(v) || v.ids.first() != views[0].ids.first())
 }

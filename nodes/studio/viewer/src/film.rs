@@ -13,7 +13,6 @@ pub struct Film {
     last: Option<View>,
     /// Every state whose number is a multiple is kept.
     every: usize,
-    /// Number of states so far.
     count: usize,
     bytes: usize,
     most: usize,

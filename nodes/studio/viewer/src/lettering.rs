@@ -2,7 +2,6 @@
 
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 
-/// Letters of one size.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lettering {
     /// Height of a letter, pixels.

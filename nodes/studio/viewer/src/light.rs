@@ -126,7 +126,6 @@ impl Grid {
         (z * self.cells[1] + y) * self.cells[0] + x
     }
 
-    /// The spheres in the cells around a place.
     fn near(&self, place: [f64; 3]) -> impl Iterator<Item = &([f64; 3], f64, u32)> {
         let around = [0, 1, 2].map(|k| {
             let at = ((place[k] - self.low[k]) / self.cell).floor();

@@ -32,7 +32,6 @@ impl Quantity {
 /// A grain that carries force, where only this is shown.
 pub(crate) const CARRIER: Colour = [46, 104, 150];
 
-/// The colour of each grain.
 pub(crate) fn colours(view: &View, quantity: Quantity) -> Vec<Colour> {
     let (top, table) = (view.force_of_full_colour(), by_coordination());
     let of = |grain: usize| match quantity {

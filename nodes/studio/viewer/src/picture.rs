@@ -135,7 +135,6 @@ impl Picture {
     }
 }
 
-/// Spheres at their places and the cell.
 fn scene(view: &View, quantity: Quantity, parts: &Parts, width: usize, room: [f64; 4]) -> Scene {
     let cell = view.matrix();
     let colours = colours(view, quantity);

@@ -196,7 +196,6 @@ impl Scene {
         samples
     }
 
-    /// The colour of a ball or rod at a place.
     fn colour(&self, light: &Light, owner: u32, at: [f64; 2]) -> [f64; 3] {
         let (colour, [factor, glint]) = match self.balls.get(owner as usize) {
             Some(ball) => {
@@ -258,7 +257,6 @@ impl Scene {
     }
 }
 
-/// Places of the samples in a pixel.
 fn offsets() -> impl Iterator<Item = (f64, f64)> {
     let place = |a: usize, b: usize| (a as f64 + (b as f64 + 0.5) / SIDE as f64) / SIDE as f64;
     (0..SAMPLES).map(move |s| (place(s % SIDE, s / SIDE), place(s / SIDE, s % SIDE)))

@@ -25,7 +25,6 @@ pub struct View {
     pub(crate) radii: Vec<f64>,
     /// Contacts of each grain that are not with rattlers.
     pub(crate) coordination: Vec<u32>,
-    /// True for each grain that is a rattler.
     pub(crate) rattler: Vec<bool>,
     /// Mean normal force of the contacts of each grain, N; 0 without contacts.
     pub(crate) force: Vec<f64>,

@@ -44,7 +44,6 @@ pub(crate) fn measure(
     Ok(Found { shown, is_without, is_fault, messages })
 }
 
-/// The details of a probe with strains of this amplitude.
 fn probe_view(amplitude: f64, probe: &StrainProbeResult) -> ProbeView {
     ProbeView {
         amplitude,

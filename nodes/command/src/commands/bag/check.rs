@@ -47,12 +47,10 @@ pub(super) fn run(args: &Recorded) -> Result<Exit, Failure> {
     Ok(if sound { Exit::Done } else { Exit::DataLoss })
 }
 
-/// The check, and the runs that it found.
 #[derive(Serialize)]
 struct View {
     #[serde(flatten)]
     check: Check,
-    /// Why it is unknown which messages are right.
     disputes: Vec<String>,
     /// That the recording holds several runs, and by what; null if it is of one.
     several_runs: Option<String>,

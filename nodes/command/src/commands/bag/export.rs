@@ -97,7 +97,6 @@ pub fn export(format: &str, folder: &Path, packings: &[&Imported]) -> Result<Vec
     written.inspect_err(|_| writer.remove())
 }
 
-/// Writes packings into a folder.
 struct Writer<'a> {
     exporter: Exporter,
     path: &'a Path,
@@ -109,8 +108,7 @@ struct Writer<'a> {
     strain_is_left_out: bool,
 }
 
-/// The packing, without a strain that counts from the first step of its run: in a file it would be that since a reference
-/// state.
+/// The packing without a strain since the first step of its run: in a file it would be that since a reference state.
 fn referred(imported: &Imported) -> Cow<'_, Packing> {
     let packing = &imported.packing;
     match &packing.path {
@@ -127,7 +125,6 @@ impl<'a> Writer<'a> {
         Self { exporter, path, folder, packings: 0, made: BTreeSet::new(), strain_is_left_out: false }
     }
 
-    /// Writes the next packing; notes on it.
     fn write(&mut self, imported: &Imported) -> Result<Vec<String>, Failure> {
         let source = self.path.display();
         let mut notes: Vec<String> = imported.notes.iter().map(|note| format!("{source}: {note}")).collect();

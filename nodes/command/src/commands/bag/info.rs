@@ -51,7 +51,6 @@ fn records_of_recorders(recording: &Recording) -> Vec<BTreeMap<String, String>> 
     names.iter().filter(|name| is_of_recorder(name)).filter_map(|name| recording.metadata(name)).collect()
 }
 
-/// The recording and the recorder's metadata of its run.
 #[derive(Serialize)]
 struct View {
     #[serde(flatten)]
@@ -62,9 +61,7 @@ struct View {
     commit: Option<String>,
     /// Name of the host of the recorder; null if it is unknown, or recorders differ.
     host: Option<String>,
-    /// Processes whose messages were left out.
     strangers: Vec<StrangerView>,
-    /// Why it is unknown which messages are right.
     disputes: Vec<String>,
     /// Topics that the recorder of the run left out, in a sentence; null without.
     left_out: Option<String>,

@@ -91,7 +91,6 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// Topics of the contract, and which others.
 fn topics(args: &Args) -> Result<(Vec<Topic>, OtherTopics), Failure> {
     let mut names = args.names.clone();
     names.topics.extend(args.named.iter().cloned());

@@ -49,7 +49,6 @@ pub(super) fn read(path: &Path, recipe: usize, by: &[&[String]]) -> Result<Vec<C
     Ok(samples)
 }
 
-/// Numbers of packings and states of a file.
 pub(super) fn counted(path: &Path, samples: &[CalibrationSample]) -> String {
     let states = count(samples.len(), "state");
     format!("{} ({states}) of {}", count(grainlab_calibration::packings(samples), "packing"), path.display())

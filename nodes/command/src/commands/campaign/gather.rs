@@ -104,10 +104,8 @@ pub(crate) fn states<'a>(campaign: &'a Campaign, folder: &Folder) -> Result<(Vec
     Ok((states, exit))
 }
 
-/// The states of a member.
 struct Found<'a> {
     states: Vec<State<'a>>,
-    /// True if the file of its scene is not there.
     without_scene: bool,
 }
 
@@ -135,11 +133,8 @@ fn of_member<'a>(member: &'a Member, run: &Path) -> Result<Found<'a>, String> {
     Ok(Found { states: back.states.into_iter().map(state).collect(), without_scene })
 }
 
-/// Returns the scene of a member, whose recording has the text `recorded`. `None` if the file of the scene is not there, as on another machine:
-/// then only what is set in the scene is compared.
-///
-/// # Errors
-/// Returns an error if the recording is of another scene, seed, or value, or if the scene is invalid.
+/// Reads the scene of a member, and refuses a recording (`recorded`) of another scene, seed or value.
+/// `None` if the file of the scene is not there, as on another machine: then only what is set in the scene is compared.
 fn scene_of(member: &Member, recorded: &str) -> Result<Option<Scene>, String> {
     let read = |scene: &str| scenes::read(scene, &member.sets(), Some(member.seed));
     let is_file = member.scene.contains('/');
@@ -254,7 +249,6 @@ mod tests {
         Member { name: "m".into(), scene: scene.into(), seed, set }
     }
 
-    /// The text in the recording of a member.
     fn recorded(member: &Member) -> String {
         scenes::read(&member.scene, &member.sets(), Some(member.seed)).unwrap().text
     }

@@ -11,7 +11,6 @@ use std::collections::BTreeMap;
 /// Most rows of members at work, and of others.
 const ROWS: usize = 10;
 
-/// Prints the state of every member, or counts and some rows.
 pub(super) fn run(campaign: &Campaign, folder: &Folder, format: Format) -> Result<Exit, Failure> {
     let members: Vec<Standing> = campaign.members.iter().map(|m| folder.standing(m)).collect();
     let process = match Lock::at_work(folder.root()) {

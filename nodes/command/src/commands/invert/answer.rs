@@ -14,18 +14,14 @@ use grainlab_node_kit::Exit;
 use grainlab_results::Inference;
 use serde::Serialize;
 
-/// One state and one outcome per case.
 #[derive(Debug)]
 pub(super) struct Answer {
-    /// Line of the table.
     pub(super) line: Option<u64>,
-    /// Or the reason why the line is invalid.
     pub(super) state: Result<State, BadRow>,
     /// One per case; empty without a state.
     pub(super) outcomes: Vec<Result<Inversion, EmtError>>,
 }
 
-/// An answer as JSON.
 #[derive(Debug, Serialize)]
 pub(super) struct View<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -36,7 +32,6 @@ pub(super) struct View<'a> {
     more: More,
 }
 
-/// Additional output on demand.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct More {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -48,7 +43,6 @@ pub(super) struct More {
 }
 
 impl Answer {
-    /// The outcome of each case for a state.
     pub(super) fn of(state: State, line: Option<u64>, cases: &[Case]) -> Self {
         let outcomes = cases.iter().map(|case| state.infer(case)).collect();
         Self { line, state: Ok(state), outcomes }
@@ -65,7 +59,6 @@ impl Answer {
         }
     }
 
-    /// With the stable keys of results, one per case.
     pub(super) fn inferences(&self, cases: &[Case]) -> Vec<Inference> {
         let one = |(i, case): (usize, &Case)| self.inference(case, self.outcomes.get(i));
         cases.iter().enumerate().map(one).collect()

@@ -237,7 +237,6 @@ impl Args {
         if of_prior { vec!["relaxed".to_owned()] } else { self.model.clone() }
     }
 
-    /// Inputs common to all states.
     pub(super) fn defaults(&self) -> Result<State, Failure> {
         let positive = |v: f64| v > 0.0 && v.is_finite();
         in_range("grain-shear-modulus", self.grain_shear_modulus, "more than 0 and finite", positive)?;
@@ -275,7 +274,6 @@ impl Args {
         })
     }
 
-    /// The state given by the flags.
     pub(super) fn state(
         &self,
         mut state: State,

@@ -6,7 +6,6 @@ use grainlab_recordings::input;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The name for the default calibration of each model.
 pub(super) const DEFAULT: &str = "default";
 
 /// A calibration for all models: a built-in one, or a file; `None` for `default`, by which each model has its own.

@@ -9,7 +9,6 @@ use std::sync::Arc;
 /// and each of the last four.
 pub(super) const GAMMAS: [&str; 6] = ["given", "total", "elastic", "contact", "zero", "all"];
 
-/// One case to invert by: a model, its calibration, γ/Δ and prior.
 #[derive(Clone, Debug)]
 pub(super) struct Case {
     pub(super) model: &'static dyn Model,

@@ -55,7 +55,6 @@ pub(crate) struct Columns {
 #[derive(Clone, Debug)]
 pub(crate) struct Row {
     pub(crate) state: State,
-    /// Cells of the columns to group by.
     pub(crate) group: Vec<String>,
 }
 
@@ -157,7 +156,6 @@ impl Columns {
         keys.split(' ').filter(|key| !is_there(key)).collect()
     }
 
-    /// True if a column contains the truth of an estimate.
     pub(crate) fn has_truth(&self) -> bool {
         self.inputs.iter().any(|(input, ..)| matches!(input.role, Role::Truth(_)))
     }
@@ -481,8 +479,7 @@ fn stiffness_columns(
     Ok(Some(columns))
 }
 
-/// A cell as the name of a group: numbers that are not whole, such as the pressure at the end of a servoed
-/// phase, to three digits.
+/// A cell as a group's name: numbers that are not whole, such as the pressure after a servoed phase, to three digits.
 fn group_label(cell: &str) -> String {
     match cell.parse::<f64>() {
         Ok(value) if value.is_finite() && value.fract() != 0.0 => {

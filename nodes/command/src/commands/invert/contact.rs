@@ -16,7 +16,6 @@ pub(crate) enum Contact {
 }
 
 impl Contact {
-    /// The prior with this contact.
     pub(super) fn of(self, prior: &SeriesPrior) -> SeriesPrior {
         match self {
             Self::Free => prior.clone(),

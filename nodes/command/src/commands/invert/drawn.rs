@@ -13,7 +13,6 @@ use std::path::Path;
 /// Ratio of the scatter of the draws to that of the estimate, or its inverse, from which the two are said to differ.
 const UNLIKE: f64 = 1.15;
 
-/// Number of draws.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Number {
     pub(super) chains: usize,
@@ -51,7 +50,6 @@ pub(super) fn write(state: &State, cases: &[Case], number: Number, path: &Path) 
     Ok(())
 }
 
-/// Notes where the draws of a quantity scatter otherwise than the estimate states.
 pub(super) fn unlike(draws: &Draws, estimate: &Inversion, has_prior: bool) -> impl Iterator<Item = String> {
     draws.quantities.iter().filter_map(move |quantity| unlike_of(draws, estimate, *quantity, has_prior))
 }
@@ -79,7 +77,6 @@ fn unlike_of(
     })
 }
 
-/// Draws of the only case, and its estimate.
 pub(super) fn drawn(
     state: &State,
     case: &Case,

@@ -30,7 +30,6 @@ impl std::str::FromStr for Odds {
     }
 }
 
-/// Evidence of one model.
 #[derive(Debug, Serialize)]
 pub(super) struct OfModel {
     model: &'static str,
@@ -49,10 +48,8 @@ pub(super) struct OfModel {
     reason: Option<String>,
 }
 
-/// The moduli and their observed values, and the evidence.
 type Found = (Vec<(Modulus, f64)>, Evidence);
 
-/// Evidences of every case.
 pub(super) fn of_ways(
     state: &State,
     cases: &[Case],
@@ -89,7 +86,6 @@ pub(super) fn of_ways(
     Ok(cases.iter().zip(&found).map(one).collect())
 }
 
-/// True for the same moduli with the same values, but for rounding.
 fn are_same(a: &[(Modulus, f64)], b: &[(Modulus, f64)]) -> bool {
     let is_same =
         |((m, v), (n, w)): (&(Modulus, f64), &(Modulus, f64))| m == n && (v - w).abs() <= ROUNDING * v.abs();
@@ -101,7 +97,6 @@ fn of_case(state: &State, case: &Case, seed: u64) -> Result<Found, EmtError> {
     Ok((posterior.observed(), posterior.evidence()?))
 }
 
-/// As a text table.
 pub(super) fn people(models: &[OfModel]) -> String {
     let mut t =
         Table::new(["model", "calibration", "evidence of", "ln evidence", "+-", "prior odds", "probability"]);

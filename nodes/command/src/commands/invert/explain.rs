@@ -7,7 +7,6 @@ use grainlab_emt::{EmtError, Inversion};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// One quantity of one model.
 #[derive(Debug, Serialize)]
 pub(super) struct Explained {
     model: &'static str,
@@ -27,7 +26,6 @@ pub(super) struct Explained {
     condition_number: Option<f64>,
 }
 
-/// All results of the models.
 pub(super) fn explained(outcomes: &[Result<Inversion, EmtError>], cases: &[Case]) -> Vec<Explained> {
     let found = outcomes.iter().zip(cases).filter_map(|(o, case)| Some((o.as_ref().ok()?, case)));
     found.flat_map(|(estimate, case)| of_estimate(estimate, case)).collect()
@@ -57,7 +55,6 @@ fn of_estimate(estimate: &Inversion, case: &Case) -> Vec<Explained> {
     determined.map(one).collect()
 }
 
-/// As a text table with a column for each contributing input.
 pub(super) fn people(explained: &[Explained]) -> String {
     let has_a_say = |name: &&&str| explained.iter().any(|e| e.information.contains_key(**name));
     let inputs: Vec<&str> = INFERENCE_INPUTS.iter().filter(has_a_say).copied().collect();

@@ -10,7 +10,6 @@ use std::sync::LazyLock;
 /// Share of a quantity below which a standard deviation of 1 Pa and less is improbable.
 const SHARE: f64 = 1e-5;
 
-/// One number of a state.
 pub(super) struct Input {
     /// Name in JSON.
     pub(super) key: &'static str,
@@ -31,7 +30,6 @@ pub(super) enum Role {
     Stddev,
     /// Another input of a model.
     Datum,
-    /// The truth for comparisons.
     Truth(InferredQuantity),
 }
 
@@ -60,7 +58,6 @@ pub(super) static INPUTS: LazyLock<Vec<Input>> = LazyLock::new(|| {
     DATA.into_iter().chain(InferredQuantity::ALL.map(truth)).collect()
 });
 
-/// Inputs of the models.
 const DATA: [Input; 30] = inputs! {
     "g12_pa" Modulus "" |s| s.moduli.get(Modulus::G12), |s, v| s.set_modulus(Modulus::G12, v);
     "g12_sigma_pa" Stddev "standard deviation of g12_pa" |s| s.sigma_of(Modulus::G12), |s, v| s.set_sigma(Modulus::G12, v);

@@ -45,8 +45,6 @@ struct Verdict {
     anisotropy: Option<[f64; 2]>,
 }
 
-/// Inverts every row, and prints the errors against the truth; `plot` is the file of the plot, if one is
-/// drawn.
 pub(super) fn run(
     mut rows: Rows,
     by: &[String],

@@ -31,7 +31,6 @@ const FURTHER: [(&str, Option<f64>); 6] = [
     ("sh", Some(90.0)),
 ];
 
-/// The file of a plan.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Plan {
@@ -53,7 +52,6 @@ impl Plan {
     }
 }
 
-/// Speeds of one mode.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Planned {
@@ -63,13 +61,11 @@ struct Planned {
     error: Option<f64>,
 }
 
-/// A quantity with its expected error.
 #[derive(Clone, Debug, Serialize)]
 struct Quantity {
     /// Name in `[want]`.
     name: &'static str,
     pressure_pa: Option<f64>,
-    /// Standard deviation before the speeds.
     prior_sigma: f64,
     /// Root mean square of the standard deviations over the samples, with their 10 and 90 % quantiles.
     sigma: f64,
@@ -79,7 +75,6 @@ struct Quantity {
     sigma_by_error: Vec<f64>,
 }
 
-/// One more speed, and the sigmas with it.
 #[derive(Debug, Serialize)]
 struct Further {
     mode: String,
@@ -99,7 +94,6 @@ struct Answer {
     notes: Vec<String>,
 }
 
-/// Kinds of quantities.
 const KINDS: [&str; 5] = ["z", "eps", "eps_stiffness", "stiffness_ratio", "level"];
 
 impl Answer {
@@ -116,7 +110,6 @@ impl Answer {
     }
 }
 
-/// A line of the plan with the relative error of its speed.
 type Wave = (SpeedLine, f64);
 
 fn waves(plan: &Plan) -> Result<Vec<Wave>, String> {
@@ -151,7 +144,6 @@ fn waves(plan: &Plan) -> Result<Vec<Wave>, String> {
     Ok(all)
 }
 
-/// The waves that are not planned yet.
 fn further(plan: &Plan, planned_waves: &[Wave]) -> Result<Vec<(Further, Wave)>, String> {
     let extra = plan.extra();
     let has_angle = plan.speeds.iter().any(|s| s.angles.is_some());
@@ -280,7 +272,6 @@ fn of_wave(of: &Further) -> String {
     format!("{}{angle}, {} kPa", of.mode, of.pressure_pa / 1e3)
 }
 
-/// The further speed that helps each quantity most, and the errors that are wanted.
 fn sentences(answer: &Answer, want: &BTreeMap<String, f64>) -> Result<Vec<String>, String> {
     let mut notes = Vec::new();
     for name in KINDS {

@@ -7,7 +7,6 @@ use grainlab_emt::{Check, EmtError, Inversion, PosteriorSettings};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Prediction of one model.
 #[derive(Debug, Serialize)]
 pub(super) struct Predictive {
     model: &'static str,
@@ -61,7 +60,6 @@ fn view(case: &Case, check: &Check) -> Predictive {
     }
 }
 
-/// As a text table.
 pub(super) fn people(all: &[Predictive]) -> String {
     if all.is_empty() {
         return String::new();

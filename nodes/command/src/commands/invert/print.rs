@@ -7,7 +7,6 @@ use grainlab_console::{CsvText, Table};
 use grainlab_core::notes::texts;
 use grainlab_results::{Inference, inference_text};
 
-/// Converts results to text.
 pub(super) struct Printer<'a> {
     pub(super) cases: &'a [Case],
     /// True for every model in the text of one state, instead of the recommended one.
@@ -41,7 +40,6 @@ impl Printer<'_> {
         text.finish()
     }
 
-    /// One state, warnings below.
     pub(super) fn state(&self, answer: &Answer, more: &More) -> String {
         let all = answer.inferences(self.cases);
         let mut text =
@@ -51,7 +49,6 @@ impl Printer<'_> {
         text + &more.evidence.as_deref().map_or_else(String::new, evidence::people)
     }
 
-    /// Many states, warnings below.
     pub(super) fn people(&self, answers: &[Answer]) -> String {
         let mut t = Table::new(["sample", "p/kPa", "gamma/Delta"].into_iter().chain(Inference::columns()));
         let mut warnings = String::new();

@@ -7,15 +7,13 @@ use grainlab_recordings::input;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Gives the prior of a file to every case whose model infers one of its quantities. An error if no model infers one of them, or
-/// if the prior excludes the domain of a model.
+/// Gives the prior to every case that infers one of its quantities. Fails if none does, or if it excludes the domain of a model.
 pub(super) fn apply(path: &Path, cases: &mut [Case]) -> Result<(), Failure> {
     let name = path.display();
     let text = input::text(path, input::SETTINGS).map_err(|e| Failure::failed(format!("{name}: {e}")))?;
     apply_text(&name.to_string(), &text, cases)
 }
 
-/// As [`apply`], with the text of the file of this name.
 pub(super) fn apply_text(name: &str, text: &str, cases: &mut [Case]) -> Result<(), Failure> {
     let prior = Prior::parse(text).map_err(|e| Failure::usage(format!("{name}: {e}")))?;
     for quantity in prior.quantities() {
@@ -39,7 +37,6 @@ pub(super) fn apply_text(name: &str, text: &str, cases: &mut [Case]) -> Result<(
     Ok(())
 }
 
-/// The whole prior of a case as a file.
 pub(super) fn text(case: &Case) -> Result<String, Failure> {
     let domain = case.model.prior_domain(&case.calibration);
     let prior = case.own_prior().completed(&domain).map_err(Failure::usage)?;

@@ -19,7 +19,6 @@ const ENDLESS: u64 = 64 << 20;
 /// Rows that one thread takes at a time.
 const SHARE: usize = 32;
 
-/// A line with its number.
 type Line = (u64, Vec<u8>);
 
 struct Lines {
@@ -101,7 +100,6 @@ impl Rows {
         Self::below_header(Lines::open(path)?, by, defaults)
     }
 
-    /// The table of this text.
     pub(super) fn of_text(text: Vec<u8>, defaults: State) -> Result<Self, Failure> {
         Self::below_header(Lines::new(Box::new(Cursor::new(text)), "table".to_owned()), &[], defaults)
     }
@@ -144,7 +142,6 @@ impl Rows {
         }
     }
 
-    /// The name of the table in messages.
     pub(crate) fn name(&self) -> &str {
         &self.lines.name
     }

@@ -23,7 +23,6 @@ pub(super) fn prior(path: Option<&Path>) -> Result<SeriesPrior, Failure> {
         .map_err(|e| Failure::usage(format!("{name}: {e}; this prior is that of samples whose contacts are not known: --print-prior --contact free prints one")))
 }
 
-/// Infers every sample of a file, and prints the answers.
 pub(super) fn run(
     name: &str,
     lines: &[SpeedLine],

@@ -32,7 +32,6 @@ const SYNONYMS: [(&str, &str); 15] = [
 /// Units of columns, each a thousand times the one before.
 const UNITS: [&str; 4] = ["pa", "kpa", "mpa", "gpa"];
 
-/// The units as they are written.
 const SPELLED: [&str; 4] = ["Pa", "kPa", "MPa", "GPa"];
 
 /// Shortest name in which one letter may be wrong: below it, other names are as near.

@@ -168,7 +168,6 @@ fn read_as(column: &str) -> (&str, f64) {
         .map_or((column, 1.0), |(_, name, factor)| (name, factor))
 }
 
-/// A cell in the unit of the column that is read.
 fn in_unit(cell: &str, factor: f64) -> String {
     let scaled = cell.parse::<f64>().ok().filter(|_| factor != 1.0).map(|value| (factor * value).to_string());
     scaled.unwrap_or_else(|| cell.to_owned())
@@ -272,7 +271,6 @@ fn way(row: &SpeedLine) -> Result<Option<(Vec3, Vec3)>, String> {
     }
 }
 
-/// The cell that could not be read.
 pub(crate) fn not_a_number(error: &csv::Error, header: &StringRecord, record: &StringRecord) -> String {
     let at = match error.kind() {
         csv::ErrorKind::Deserialize { err, .. } => err.field().map_or(0, |field| field as usize),

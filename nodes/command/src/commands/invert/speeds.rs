@@ -10,7 +10,6 @@ use grainlab_emt::{Conditions, Measured, Probe};
 use grainlab_emt_inversion::notes_on_fit;
 use grainlab_node_kit::Exit;
 
-/// What to do where a row has no density.
 pub(super) const NO_DENSITY: &str =
     "column density is empty: give it, or grain_density and phi, or --density";
 

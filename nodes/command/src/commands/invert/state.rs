@@ -10,7 +10,6 @@ use grainlab_emt::{
     Posterior, PosteriorSettings, Probe, StrainRatio, StrainRatioSource,
 };
 
-/// One state, as given.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct State {
     pub(crate) sample: Option<String>,
@@ -38,17 +37,13 @@ pub(crate) struct State {
     pub(crate) poisson: Option<f64>,
     /// Whether contacts slid while the moduli were measured; `None` if nothing is stated.
     pub(crate) probe: Option<Probe>,
-    /// Notes on the data, for every estimate.
     pub(crate) notes: Vec<Note>,
-    /// Number of grains, if a table contains it.
     pub(crate) grains: Option<f64>,
-    /// The true microstructure, if a table contains it.
     pub(crate) truth: Microstructure,
 }
 
 impl State {
-    /// The flags for all states that are given, with the keys of the inputs that they set; --error is for moduli without an error of
-    /// their own.
+    /// The given flags for all states, with the keys of the inputs that they set; --error is for moduli without their own error.
     pub(super) fn flags(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
         [
             (self.grain_shear_modulus.is_some(), ("grain-shear-modulus", "grain_shear_modulus_pa")),
@@ -168,8 +163,7 @@ impl State {
         Some(ModuliCovariance::from_diagonal(&variance.into()))
     }
 
-    /// The material: values given for the grains, and those of the calibration for the rest. `None` if none
-    /// is given, nor an error of one.
+    /// Values given for the grains, and those of the calibration for the rest. `None` if none is given, nor an error of one.
     fn material(&self, calibration: &Calibration) -> Option<Material> {
         let own = calibration.material();
         let has_error =
@@ -181,8 +175,7 @@ impl State {
         })
     }
 
-    /// The γ/Δ set, or the name of the missing one. By default: the one given, else that of the paper's
-    /// models.
+    /// The γ/Δ asked for, else the one given, else that of the paper's models; or the name of the missing one.
     fn gamma(&self, asked: Option<StrainRatioSource>) -> Result<StrainRatio, &'static str> {
         let of = |source, measured: Option<f64>, missing| {
             measured.map(|value| StrainRatio { value, stddev: 0.0, source }).ok_or(missing)

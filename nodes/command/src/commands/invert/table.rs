@@ -11,7 +11,6 @@ use std::time::Instant;
 /// Maximum number of states printed as a text table, whose columns are aligned at its end.
 const FOR_PEOPLE: usize = 1000;
 
-/// Counts and state of the output.
 #[derive(Debug)]
 pub(super) struct Tally {
     rows: u64,
@@ -27,7 +26,6 @@ impl Tally {
         Self { rows: 0, bad: 0, word, exit: Exit::Done, begin: Instant::now() }
     }
 
-    /// Counts a row and reports its errors.
     pub(super) fn add(&mut self, exit: Exit, complaint: &str) {
         self.rows += 1;
         self.bad += u64::from(exit != Exit::Done);
@@ -44,7 +42,6 @@ impl Tally {
         }
     }
 
-    /// Ends the output; returns the exit code.
     pub(super) fn end(self, table: &Rows) -> Result<Exit, Failure> {
         let left_out = table.left_out();
         if self.rows == 0 {
@@ -62,7 +59,6 @@ impl Tally {
     }
 }
 
-/// Inverts every row.
 pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Result<Exit, Failure> {
     let answer = |number, row: Result<Row, _>| match row {
         Ok(row) => Answer::of(row.state, Some(number), printer.cases),

@@ -4,10 +4,10 @@ use super::finish::{Output, finish};
 use super::order;
 use crate::commands::scene::notes_on;
 use grainlab_console::Failure;
-use grainlab_launcher::{NodePlan, Outline, RecordedSpeeds, Run, Supervised, Supervisor, run_in_one_process};
+use grainlab_launcher::{NodePlan, Outline, Run, Supervised, Supervisor, run_in_one_process};
 use grainlab_node_kit::{Exit, FreeDomain, Network, OffTheBus, RunId};
+use grainlab_recordings::Lock;
 use grainlab_recordings::scenes::SceneText;
-use grainlab_recordings::{Lock, Recording};
 use grainlab_scene::Scene;
 use std::path::Path;
 
@@ -33,13 +33,10 @@ pub(super) fn conduct(
     for note in notes_on(scene) {
         grainlab_console::say!("grainlab: note: {note}");
     }
-    // Programs that measured packings before an interruption are waited for as before it.
-    let resumed = output.resumed && Recording::open(directory).is_ok();
-    let recorded = if resumed { RecordedSpeeds::read(directory)? } else { RecordedSpeeds::default() };
     let outline = outline(&scene.scene);
     let supervised = match domain {
-        None => run_in_one_process(plans, id, directory, outline, &recorded),
-        Some(domain) => supervise(plans, Run { id, domain }, directory, outline, &recorded),
+        None => run_in_one_process(plans, id, directory, outline),
+        Some(domain) => supervise(plans, Run { id, domain }, directory, outline),
     };
     drop(medium);
     let supervised = supervised.inspect_err(|_| _ = remove_if_unused(directory))?;
@@ -109,21 +106,14 @@ fn supervise(
     run: Run,
     directory: &Path,
     outline: Outline,
-    recorded: &RecordedSpeeds,
 ) -> Result<Supervised, Failure> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|e| Failure::failed(format!("tokio: {e}")))?;
-    runtime
-        .block_on(async { Supervisor::new(plans, run, directory, outline)?.resuming(recorded).run().await })
+    runtime.block_on(async { Supervisor::new(plans, run, directory, outline)?.run().await })
 }
 
 fn outline(scene: &Scene) -> Outline {
-    let last = scene.phases.iter().rfind(|p| p.publish || p.record.is_some());
-    Outline {
-        phases: scene.phases.len(),
-        starts_from_packing: scene.start.is_some(),
-        ends_within: last.is_some_and(|p| !p.publish),
-    }
+    Outline { phases: scene.phases.len(), starts_from_packing: scene.start.is_some() }
 }
 
 #[cfg(test)]

@@ -14,9 +14,7 @@ const TIME_LIMIT: Duration = Duration::from_secs(30);
 /// Files that a run writes to its directory, besides its recording, its scene and its launch file.
 const FILES: [&str; 2] = ["summary.json", "report.html"];
 
-/// Content of a given directory.
 pub(super) enum Given {
-    /// There is no run.
     Empty(PathBuf, Lock),
     /// A run that is not finished.
     Begun(PathBuf, Lock),
@@ -25,9 +23,6 @@ pub(super) enum Given {
 }
 
 /// Locks the directory of a run, so that one launcher at a time works in it.
-///
-/// # Errors
-/// Returns an error if another launcher does not end in time.
 pub(super) fn lock(directory: &Path) -> Result<Lock, Failure> {
     Lock::take(directory, TIME_LIMIT)
 }
@@ -48,10 +43,7 @@ pub(super) fn check_path(directory: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// Looks into a directory, and locks it.
-///
-/// # Errors
-/// A run of another scene or launch file, a run that is under way, and files of others that the run would replace.
+/// Locks a directory; refuses another run, a run under way, and files of others that the run would replace.
 pub(super) fn given(directory: &Path, scene: &SceneText, order: &Order) -> Result<Given, Failure> {
     if run_state(directory) == RunState::Absent {
         refuse_files_of_others(directory, scene)?;

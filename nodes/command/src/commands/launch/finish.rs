@@ -14,7 +14,6 @@ use grainlab_results::{brief, summary_text};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Form of the result.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Output {
     pub(super) format: Format,
@@ -22,12 +21,10 @@ pub(super) struct Output {
     pub(super) verbose: bool,
     /// True if the run was resumed: its times cover only the part since then.
     pub(super) resumed: bool,
-    /// Write the page of the run.
     #[cfg_attr(not(feature = "studio"), expect(dead_code, reason = "the studio writes pages"))]
     pub(super) report: bool,
 }
 
-/// Published results that the recording lacks.
 fn missing(received: &Received, back: &ReadBack) -> Vec<String> {
     let mut missing = Vec::new();
     if back.several_runs.is_some() {
@@ -45,8 +42,7 @@ fn missing(received: &Received, back: &ReadBack) -> Vec<String> {
     missing
 }
 
-/// Returns the number of messages in the recording, by topic. The statistics of a damaged file also count messages that can no longer
-/// be read, so its messages are read one by one.
+/// Number of messages by topic. A damaged file is read message by message: its statistics also count unreadable ones.
 fn recorded(recording: &Recording) -> Result<BTreeMap<String, u64>, Failure> {
     let stated = recording.info().topics.into_iter().map(|t| (t.name, t.messages));
     if recording.warnings().is_empty() {

@@ -7,10 +7,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Name of the file in the run directory.
 pub(super) const FILE: &str = "launch.json";
 
-/// A launch file with its arguments.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Order {
     /// Text of the launch file.
@@ -23,7 +21,6 @@ pub(super) struct Order {
     pub(super) words: Vec<String>,
     #[serde(default)]
     pub(super) record: Record,
-    /// All nodes are in the process of the launcher.
     #[serde(default)]
     pub(super) one_process: bool,
 }
@@ -44,7 +41,6 @@ pub(super) struct EngineOptions {
 }
 
 impl EngineOptions {
-    /// Sets the arguments of a launch file.
     pub(super) fn set(&self, arguments: &mut BTreeMap<String, String>) {
         let quoted = |text: &String| serde_json::Value::from(text.as_str()).to_string();
         let given = [
@@ -78,7 +74,6 @@ impl Order {
             && is_recorded
     }
 
-    /// Writes it into the run directory.
     pub(super) fn keep(&self, directory: &Path) -> Result<(), Failure> {
         let path = directory.join(FILE);
         // At once: what has a launch file can be resumed.
@@ -97,7 +92,6 @@ impl Order {
         serde_json::from_str(&text).map_err(|e| failed(&e))
     }
 
-    /// The processes to start, for a run in this directory.
     pub(super) fn plans(&self, directory: &Path) -> Result<Vec<NodePlan>, Failure> {
         // Parameters are YAML: a path with a space or a colon needs quotes.
         let path = |p: &Path| serde_json::Value::from(p.to_string_lossy()).to_string();

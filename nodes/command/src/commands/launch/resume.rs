@@ -15,7 +15,6 @@ use grainlab_recordings::{Recording, RunState, SeveralRuns, run_state, scenes};
 use grainlab_results::brief::goes_on;
 use std::path::{Path, PathBuf};
 
-/// Continues a run, with another engine if one is given.
 pub(super) fn run(directory: &Path, engine: &EngineOptions, output: Output) -> Result<Exit, Failure> {
     let output = Output { resumed: true, ..output };
     let failed = |e: &dyn std::fmt::Display| Failure::failed(format!("{}: {e}", directory.display()));
@@ -62,10 +61,7 @@ pub(super) fn run(directory: &Path, engine: &EngineOptions, output: Output) -> R
     ended
 }
 
-/// Returns the step of the last recorded packing, from which a run goes on; `None` if it has recorded none.
-///
-/// # Errors
-/// Returns an error if the scene or the seed is not the one that the recording began with, or the recording cannot be read.
+/// Returns the step of the last recorded packing, `None` without one. Fails if the recording is of another scene or seed.
 fn last_step(directory: &Path, scene: &scenes::SceneText, seed: u64) -> Result<Option<u64>, Failure> {
     let failed = |e: &dyn std::fmt::Display| Failure::failed(format!("{}: {e}", directory.display()));
     // The file of a killed recorder is completed first, so that other tools read the whole run.
@@ -92,10 +88,8 @@ fn last_step(directory: &Path, scene: &scenes::SceneText, seed: u64) -> Result<O
     }
 }
 
-/// Starts a run without a recording again from its first step, in its own directory, and says what is lost.
-///
-/// # Errors
-/// Returns an error if a file of the recording has content, which a new recording would neither use nor replace.
+/// Restarts a run without a recording in its own directory, and says what is lost.
+/// Fails if a file of the recording has content, which a new recording would neither use nor replace.
 fn start_again(directory: &Path, error: &Failure) -> Result<(), Failure> {
     let entries = std::fs::read_dir(directory).map_err(Failure::at(directory))?.flatten();
     let paths: Vec<_> = entries.map(|entry| entry.path()).collect();
@@ -140,7 +134,6 @@ mod tests {
     use super::*;
     use grainlab_recordings::RunWriter;
 
-    /// A file of a recording with this scene.
     fn record(directory: &Path, name: &str, scene: &str) {
         let elsewhere = tempfile::tempdir_in(directory.parent().unwrap()).unwrap();
         let mut run = RunWriter::create(elsewhere.path(), name, &[], Default::default()).unwrap();

@@ -65,8 +65,7 @@ impl Args {
     }
 }
 
-/// Measures every packing of every file on all cores, while the next ones are read. At most two packings a core wait for their
-/// turn, which limits the memory.
+/// Measures on all cores while the next packings are read; at most two a core wait, which limits the memory.
 fn run<R: Printed + Send>(
     files: &[PathBuf],
     options: &ImportOptions,
@@ -159,7 +158,6 @@ fn progress(files: usize) -> ProgressBar {
     bar
 }
 
-/// Reads one file; returns its warnings and their exit code.
 fn read(
     path: &Path,
     options: &ImportOptions,

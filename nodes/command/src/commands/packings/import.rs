@@ -7,7 +7,6 @@ use grainlab_msgs::topics;
 use grainlab_recordings::import::{Frames, ImportOptions};
 use std::path::PathBuf;
 
-/// Formats, for the help of a command.
 pub(crate) const FORMATS: &str = "\
 A file that cannot be read is reported and the others are measured; the exit code is the worst of all files. Ctrl-C prints
 the finished results and ends with 130. Formats are recognised by content: a recording, CSV (p,id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz and
@@ -72,7 +71,6 @@ impl Args {
         Err(Failure::usage(format!("--topic {} is for recordings, and no file is one", self.topic)))
     }
 
-    /// Checks the flags.
     pub(crate) fn options(&self) -> Result<ImportOptions, Failure> {
         let positive = |v: f64| v > 0.0 && v.is_finite();
         in_range("shear-modulus", self.shear_modulus, "a modulus in Pa, more than 0", positive)?;

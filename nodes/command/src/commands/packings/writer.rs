@@ -12,7 +12,6 @@ pub(crate) struct ResultWriter<R> {
     printer: Printer<R>,
     recording: Option<OfflineRecording>,
     pub(super) bar: ProgressBar,
-    /// Number of packings measured.
     pub(super) measured: usize,
     /// Packings that lack what was sought.
     without: usize,
@@ -47,13 +46,11 @@ impl<R: Printed> ResultWriter<R> {
         Ok(())
     }
 
-    /// Prints lines on stderr, whose exit code is this one.
     pub(super) fn complain(&mut self, lines: &[String], exit: Exit) {
         self.bar.suspend(|| lines.iter().for_each(|line| grainlab_console::say!("grainlab: {line}")));
         self.exit = worse(self.exit, exit);
     }
 
-    /// Completes the output after the last result.
     pub(super) fn finish(self) -> Result<Exit, Failure> {
         self.bar.finish_and_clear();
         print(&self.printer.end()?)?;

@@ -7,7 +7,6 @@ use grainlab_core::Vec3;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
-/// Columns of a record.
 const OWN: [&str; 13] = [
     "file",
     "distance",
@@ -56,7 +55,6 @@ pub(super) struct Row {
     pub(super) name: String,
     /// Mode and direction as the table has them, if it has.
     pub(super) wave: Vec<String>,
-    /// False if the table has no delay.
     pub(super) has_delay: bool,
     pub(super) path: PathBuf,
     pub(super) passage: Passage,

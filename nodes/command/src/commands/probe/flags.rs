@@ -13,7 +13,6 @@ const NODE: NodeKind = NodeKind::AcousticProbe;
 pub(super) struct Flags(Vec<(&'static str, String)>);
 
 impl Flags {
-    /// Parameters of the node, by name.
     pub(super) fn of(given: &[(String, String)]) -> Result<Self, Failure> {
         let specs = parameters();
         let one = |(name, text): &(String, String)| {

@@ -19,7 +19,6 @@ const SOFT: f64 = 1e-2;
 /// Maximum number of grains of a cluster; the grains of larger ones are treated one by one.
 const CLUSTER: usize = 40;
 
-/// A few grains and their softest motions.
 #[derive(Clone, Debug)]
 pub(crate) struct Cluster {
     pub(crate) grains: Vec<u32>,
@@ -33,7 +32,6 @@ pub(crate) struct Cluster {
 pub(crate) struct Soft {
     /// Square of the angular frequency, (rad/s)².
     pub(crate) square: f64,
-    /// True for a floppy motion.
     pub(crate) is_free: bool,
     /// Six rows per grain, normalised to kinetic energy: zᵀ M z = 1.
     pub(crate) shape: DVector<f64>,

@@ -11,7 +11,6 @@ use crate::dispersion::waves::{Amplitude, Row};
 use grainlab_core::Vec3;
 use grainlab_micromechanics::network::{Block, ContactSpring, generalised_inverse};
 
-/// One contact spring.
 #[derive(Clone, Copy, Debug)]
 struct BlochContact {
     i: u32,

@@ -1,22 +1,18 @@
 //! Why acoustic modes were not found.
 
-/// Why acoustic modes were not found.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum SolveError {
     /// A motion without stiffness, other than those of a few grains.
     #[error("some grains move without resistance, and carry the wave in part; use another method")]
     Floppy,
-    /// The maximum number of iterations was reached.
     #[error(
         "relative residual {residual:.1e} after {iterations} iterations; raise max_iterations or tolerance"
     )]
     NotConverged {
         /// Residual over the load.
         residual: f64,
-        /// Number of iterations.
         iterations: u32,
     },
-    /// The maximum number of rounds of inverse iteration was reached.
     #[error(
         "the square of the frequency still changed by {change:e} of itself after {rounds} rounds, among softer motions of \
          single grains; use longer waves"
@@ -24,7 +20,6 @@ pub(crate) enum SolveError {
     Unsettled {
         /// Relative change of ω² in the last round.
         change: f64,
-        /// Number of rounds.
         rounds: u32,
     },
 }

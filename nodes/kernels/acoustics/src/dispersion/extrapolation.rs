@@ -21,7 +21,6 @@ const OTHERS: f64 = 0.3;
 /// Least relative error of v²: rounding.
 const EXACT: f64 = 1e-9;
 
-/// The series of one mode.
 #[derive(Clone, Debug)]
 struct Series {
     /// Coefficients of v² as a parabola in (q/q_max)², m²/s².
@@ -32,7 +31,6 @@ struct Series {
     bent: f64,
 }
 
-/// The series of the modes of one ray.
 #[derive(Clone, Debug)]
 pub(super) struct Extrapolation {
     modes: Vec<(Vec3, Vec<DispersionPoint>, Series)>,

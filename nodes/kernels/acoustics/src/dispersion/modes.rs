@@ -20,7 +20,6 @@ const ROUNDS: u32 = 30;
 /// Residual of a solve over the square root of the tolerance of ω², whose error is of second order in the residual.
 const RESIDUAL: f64 = 1.0;
 
-/// The acoustic modes at one wave vector.
 #[derive(Debug)]
 pub(crate) struct Modes {
     /// Σ ω² p p* over the modes with their polarizations p, 1/s²: the acoustic tensor over the density, times q². Zero

@@ -4,7 +4,6 @@ use crate::dispersion::bloch::Bloch;
 use crate::dispersion::waves::{Amplitude, Block, Row, WAVES};
 use nalgebra::{Complex, DMatrix, Matrix3, SymmetricEigen};
 
-/// A complex number.
 pub(super) type C = Complex<f64>;
 
 /// Squared norm of a combination of unit motions below which it is rounding.
@@ -13,7 +12,6 @@ const DEPENDENT: f64 = 1e-12;
 /// Maximum number of softer modes that are kept.
 const SOFTER: usize = 24;
 
-/// Blocks of waves with their images.
 #[derive(Debug)]
 pub(crate) struct Subspace {
     waves: usize,
@@ -29,7 +27,6 @@ struct Held {
     mass_times: Block,
 }
 
-/// The best modes.
 #[derive(Debug)]
 pub(crate) struct Ritz {
     /// ω², 1/s², of each wave.
@@ -43,7 +40,6 @@ pub(crate) struct Ritz {
 }
 
 impl Subspace {
-    /// For modes of `waves` waves.
     pub(crate) fn new(waves: usize) -> Self {
         Self { waves, blocks: Vec::new() }
     }

@@ -5,7 +5,6 @@ use std::ops::{Add, AddAssign, Mul, Sub};
 /// Number of waves computed together.
 pub(crate) const WAVES: usize = 3;
 
-/// Numbers in a row.
 const LANES: usize = WAVES + 1;
 
 /// One number per wave, and a zero to fill a vector register.
@@ -69,7 +68,6 @@ pub(crate) struct Amplitude {
 impl Amplitude {
     pub(crate) const STILL: Amplitude = Amplitude { re: [Row::ZERO; 6], im: [Row::ZERO; 6] };
 
-    /// Adds `share` × x, for each wave.
     #[inline(always)]
     pub(crate) fn add(&mut self, share: Row, x: &Amplitude) {
         for k in 0..6 {

@@ -21,7 +21,6 @@ pub(super) struct Ambient {
     innovation: f64,
     /// Standard deviation of rounding by the digitizer, which the samples do not show.
     pub(super) rounding: f64,
-    /// Root mean square.
     pub(super) rms: f64,
     /// Number of independent complex numbers whose mean square is as certain as the power at one frequency.
     pub(super) degrees: f64,
@@ -79,13 +78,11 @@ impl Ambient {
         Self { innovation: variance.sqrt(), rounding, rms, degrees, powers, factors }
     }
 
-    /// Returns the variance of the noise behind a filter whose response has this spectrum.
     pub(super) fn variance(&self, response: &[Analytic]) -> f64 {
         let passed = response.iter().zip(&self.powers).map(|(line, power)| line.norm_sqr() * power);
         passed.sum::<f64>() / response.len() as f64
     }
 
-    /// Draws `samples` samples.
     pub(super) fn drawn(&self, samples: usize, random: &mut Noise) -> Vec<f64> {
         // As many before them, so that the process is what it is after a long time.
         let before = if self.factors.is_empty() { 0 } else { samples };

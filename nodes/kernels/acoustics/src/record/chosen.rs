@@ -15,7 +15,6 @@ const AS_STRONG: f64 = 0.7;
 /// Error of the time of a crest, periods.
 const CREST: f64 = 0.25;
 
-/// The wave of the mode.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chosen {
     pub(super) wave: Wave,

@@ -22,7 +22,6 @@ const COPIES: u64 = 64;
 /// Half a period bounds the bias. A computed record whose pick is off by more widens the error instead.
 pub(super) const HALF_PERIOD: f64 = 0.5;
 
-/// Place of the noise of copies.
 const NOISE_PLACE: u64 = u64::MAX - 2;
 
 /// The arrival in a record. Its times are in samples.
@@ -37,7 +36,6 @@ pub(super) struct Arrival<'a> {
     pickers: [Picker; 2],
 }
 
-/// What is found in one computed copy of a record.
 struct Copied {
     /// Time of each feature; `None` without a pick.
     times: [Option<f64>; 3],
@@ -66,7 +64,6 @@ pub(super) struct Compared {
 }
 
 impl<'a> Arrival<'a> {
-    /// Finds the arrival in `record`.
     pub(super) fn of(record: &Record, passage: &'a Passage) -> Result<Self, AcousticsError> {
         let rounding = rounding(&record.receiver, &record.quiet);
         let record = thinned(record)?;
@@ -107,7 +104,6 @@ impl<'a> Arrival<'a> {
         ]
     }
 
-    /// Compares the record with copies that are computed for this travel time.
     pub(super) fn compared(&self, time: f64, seed: u64) -> Compared {
         let (found, system) = (&self.found, self.band.system);
         let expected = self.path.arrival(time, system, &self.path.typical());

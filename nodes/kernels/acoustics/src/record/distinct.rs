@@ -197,10 +197,8 @@ mod tests {
 
     const PERIOD: f64 = 40.0;
 
-    /// Number of records of noise alone.
     const RECORDS: u64 = 4000;
 
-    /// A sine of one period.
     fn sine(sample: usize, start: usize) -> f64 {
         let phase = (sample as f64 - start as f64) / PERIOD;
         if (0.0..1.0).contains(&phase) { (TAU * phase).sin() } else { 0.0 }

@@ -11,7 +11,6 @@ fn low_pass(order: u32, over: f64) -> Analytic {
     (0..order).map(|k| pole(k) / (pole(k) - Analytic::new(0.0, over))).product()
 }
 
-/// The source behind the filters of the receiver.
 pub(super) fn filtered(source: &[f64], rate: f64, passage: &Passage) -> Vec<f64> {
     if passage.lowpass.is_none() && passage.highpass.is_none() {
         return source.to_vec();

@@ -78,14 +78,12 @@ impl Path {
         Self { spectrum, lines, frequency: band.frequency, loss: 0.5 * (low + high), diameters, longitudinal }
     }
 
-    /// The middle of what is not known.
     pub(super) fn typical(&self) -> Unknown {
         let bend = BEND[self.longitudinal.map_or(2, |l| usize::from(!l))].0;
         let longitudinal = self.longitudinal == Some(true);
         Unknown { bend, slowed: 0.0, is_of_constant_q: true, near: 0.0, longitudinal }
     }
 
-    /// Draws what is not known.
     pub(super) fn drawn(&self, random: &mut Noise) -> Unknown {
         let (mean, spread) = BEND[self.longitudinal.map_or(2, |l| usize::from(!l))];
         Unknown {

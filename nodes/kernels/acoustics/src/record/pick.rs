@@ -41,7 +41,6 @@ impl Pick {
         Self { method, time, time_stddev, bias, speed, speed_stddev, speed_common_stddev, apart, causes }
     }
 
-    /// Returns the pick with this standard deviation of the time, and with its speed.
     pub(super) fn with_error(self, time_stddev: f64, passage: &Passage) -> Self {
         let speed = passage.distance / self.time;
         let error_of_speed = |time_stddev: f64| {

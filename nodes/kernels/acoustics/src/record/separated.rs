@@ -59,7 +59,6 @@ pub(super) struct Separated {
     /// Delay and sign of the arrival, by correlation alone.
     pub(super) delay: f64,
     pub(super) reversed: bool,
-    /// Noise of the receiver.
     pub(super) ambient: Arc<Ambient>,
     /// Root mean square of white noise with the same power in the band of the source.
     pub(super) noise: f64,

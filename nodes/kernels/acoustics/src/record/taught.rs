@@ -18,7 +18,6 @@ const INSIDE: f64 = 0.95;
 /// Changes conditions by two random numbers from 0 to 1.
 type Change = fn(&mut Conditions, [f64; 2]);
 
-/// Returns the conditions of record `number` after `change`.
 fn changed(number: u64, change: Change) -> Conditions {
     let mut random = Pcg64Mcg::seed_from_u64(!number);
     let uniform = Uniform::new(0.0, 1.0).unwrap();

@@ -161,7 +161,6 @@ fn cover_contradiction(picks: &mut [Pick], recommended: usize, passage: &Passage
     contradictory
 }
 
-/// Returns why the recommended pick is no wave in a packing.
 fn refusal(best: &Pick, wavelengths: f64, arrival: &Arrival<'_>) -> Option<String> {
     let passage = arrival.passage;
     let per_grain = wavelengths * passage.diameter / passage.distance;
@@ -185,7 +184,6 @@ fn least(picks: &[Pick]) -> Option<usize> {
     (0..picks.len()).min_by(|a, b| picks[*a].time_stddev.total_cmp(&picks[*b].time_stddev))
 }
 
-/// Returns the pick with the errors that computed copies do not show.
 fn with_errors_beyond_copies(pick: &Pick, arrival: &Arrival<'_>, compared: &Compared) -> Pick {
     let (found, band, passage) = (&arrival.found, &arrival.band, arrival.passage);
     let period = 1.0 / (band.frequency * arrival.sample_rate);

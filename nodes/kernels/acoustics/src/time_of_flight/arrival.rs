@@ -89,7 +89,6 @@ impl Arrivals {
     }
 }
 
-/// Burst and picker of a trace that can be picked.
 fn prepared(trace: &Trace, cycles: f64, pick: ArrivalPick) -> Result<(Burst, Picker), AcousticsError> {
     let Trace { frequency, sample_rate: rate, channels, .. } = trace;
     let positive = |x: f64| x.is_finite() && x > 0.0;

@@ -7,7 +7,6 @@ use std::f64::consts::{PI, TAU};
 pub(crate) struct Burst {
     /// Centre frequency, Hz.
     pub(crate) frequency: f64,
-    /// Number of periods.
     pub(crate) cycles: f64,
 }
 

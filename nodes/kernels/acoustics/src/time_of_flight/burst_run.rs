@@ -21,7 +21,6 @@ const SAMPLES_PER_PERIOD: f64 = 64.0;
 /// Thickness of source and receivers along the ray, mean diameters.
 const THICKNESS: f64 = 2.0;
 
-/// The signals at the receivers.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct BurstResponse {
     /// Particle velocities, m/s.
@@ -96,7 +95,6 @@ pub(crate) fn send(
     Ok(BurstResponse { signals, distances, opened: opened.len() as u32, closed: closed.len() as u32 })
 }
 
-/// Grains and image of every contact.
 fn contacts(engine: &Engine) -> BTreeSet<(u32, u32, [i8; 3])> {
     let key = |c: &Contact| (c.i, c.j, c.image);
     engine.packing(Mat3::identity()).contacts.iter().map(key).collect()

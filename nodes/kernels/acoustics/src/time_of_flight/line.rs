@@ -3,7 +3,6 @@
 /// t = a + s d, by weighted least squares.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Line {
-    /// Slope s of the line.
     pub(crate) slope: f64,
     /// Standard deviation of s from the scatter of the points about the line; infinite with two points.
     pub(crate) scatter: f64,

@@ -37,7 +37,6 @@ const NONLINEAR: f64 = 1e-2;
 /// proportional to a power of one half or more of the amplitude.
 const TO_ZERO: f64 = 3.0;
 
-/// A path through a packing.
 pub(super) struct TimeOfFlight<'a> {
     pub(super) path: &'a WavePath,
     pub(super) sample: &'a Sample,

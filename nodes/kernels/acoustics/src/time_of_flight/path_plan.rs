@@ -25,7 +25,6 @@ const SLOWER: f64 = 1.0;
 pub(crate) struct PathPlan {
     /// Distances of the receivers from the source, m.
     pub(crate) receivers: Vec<f64>,
-    /// Number of repetitions of the packing.
     pub(crate) copies: u32,
     /// Duration of the recording, s.
     pub(crate) duration: f64,

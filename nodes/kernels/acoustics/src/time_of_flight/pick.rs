@@ -113,7 +113,6 @@ impl Picker {
         signal.iter().step_by(self.finer).enumerate().map(|(k, s)| s * taper(k as f64 - peak)).collect()
     }
 
-    /// Onsets before the peaks.
     fn onsets(&self, channels: &[&[f64]], peaks: &[f64], noise: f64) -> Result<Vec<f64>, String> {
         let noise = noise * Spectrum::passed(&self.low);
         let length = self.burst * self.finer as f64;

@@ -20,7 +20,6 @@ pub(crate) struct WavePath {
     pub(crate) place: [u64; 2],
 }
 
-/// Result of one path.
 #[derive(Clone, Debug)]
 pub(crate) struct PathResult {
     pub(crate) curve: DispersionCurve,
@@ -43,7 +42,6 @@ pub(crate) fn paths(packing: &Packing, rays: &[Ray]) -> Result<Vec<WavePath>, Ac
     Ok(paths)
 }
 
-/// The lattice planes normal to a ray.
 fn planes(packing: &Packing, ray: &Ray) -> Result<[i32; 3], AcousticsError> {
     let across = |indices: &[i32; 3]| {
         let normal = Ray::normal(&packing.cell, *indices).unwrap_or_else(Vec3::zeros);

@@ -56,7 +56,6 @@ pub enum UnknownLaw {
     },
 }
 
-/// Visits springs with the resistance to rolling, if there is any.
 struct WithRolling<V> {
     rolling: Option<RollingResistance>,
     visitor: V,

@@ -43,7 +43,6 @@ fn least_edge(cell: &Cell, grains: usize) -> f64 {
     one.max(two).max(three)
 }
 
-/// Grains sorted into boxes of the cell.
 pub(super) struct Grid<'a> {
     /// Number of boxes along each edge vector.
     boxes: [i64; 3],

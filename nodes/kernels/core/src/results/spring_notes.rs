@@ -16,7 +16,6 @@ pub fn spring_notes(
     of_springs(what, &packing.law, packing.friction, packing.sliding_fraction(), method, smooth)
 }
 
-/// Returns the notes for a contact law, a friction coefficient in force, and a share of contacts at its limit.
 pub(super) fn of_springs(
     what: &'static str,
     law: &ContactLaw,

@@ -12,13 +12,10 @@ use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2, TAU};
 /// Frames spread over all rotations. A class with the axes of a cube has each minimum 24 times.
 const SPREAD: usize = 48;
 
-/// Starting frames that are refined.
 const REFINED: usize = 6;
 
-/// Steps of a refinement.
 const STEPS: usize = 60;
 
-/// Unknown of the search.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Search {
     /// All three axes.
@@ -27,7 +24,6 @@ pub(super) enum Search {
     Axes,
 }
 
-/// The frame found.
 pub(super) struct Nearest {
     /// Norm of what the projection discards there.
     pub(super) residual: f64,

@@ -31,7 +31,6 @@ pub(crate) struct ForceAccumulator {
     stored: Vec<F64x8>,
 }
 
-/// The sums of one part.
 pub(crate) struct PartAccumulator<'a> {
     /// Rows that the pairs of a chunk add to. Those of grains are zero at the start of a chunk.
     pub(crate) rows: &'a mut [F64x8],
@@ -75,7 +74,7 @@ impl PartAccumulator<'_> {
         TakenForces { chunk: &mut chunk[..range.len()], part: &mut part[range], remote }
     }
 
-    /// The forces on the grains of a stored chunk. Earlier parts must be complete.
+    /// Earlier parts must be complete.
     pub(crate) fn load(&mut self, c: usize) -> StoredForces<'_> {
         let range = self.grains(c);
         self.add_remote(c);
@@ -100,7 +99,7 @@ impl PartAccumulator<'_> {
 }
 
 impl ForceAccumulator {
-    /// The sums of one part. Earlier parts must be complete.
+    /// Earlier parts must be complete.
     pub(crate) fn part_mut(&mut self, part: usize) -> PartAccumulator<'_> {
         // Nothing is stored for parts that are not owned.
         let owned = self.subdomain.parts().contains(&part);
@@ -118,7 +117,6 @@ impl ForceAccumulator {
         }
     }
 
-    /// The stored forces, for each owned chunk.
     pub(crate) fn chunks(&self) -> impl Iterator<Item = StoredForces<'_>> {
         let zero = self.zero as usize;
         let chunks = self.stored.chunks(CHUNK_SIZE).zip(self.remote.chunks(CHUNK_SIZE));
@@ -129,7 +127,6 @@ impl ForceAccumulator {
     }
 }
 
-/// The forces on the grains of a chunk.
 pub(crate) trait ChunkForces {
     /// Force and torque on grain `k` of the chunk. Each grain is asked for once.
     fn on<R: SimdRow>(&mut self, k: usize) -> [R; 2];
@@ -166,7 +163,6 @@ impl ChunkForces for TakenForces<'_> {
     }
 }
 
-/// Forces that were stored.
 #[derive(Clone, Copy)]
 pub(crate) struct StoredForces<'a> {
     stored: &'a [F64x8],
@@ -215,7 +211,6 @@ impl Kernel for StoreChunk<'_> {
 #[derive(Debug)]
 pub(crate) struct AccumulatorBuilder {
     accumulator: ForceAccumulator,
-    /// Grains of the subdomain.
     pub(crate) grains: Range<usize>,
     /// Grains of the present part.
     part: Range<usize>,
@@ -270,7 +265,6 @@ impl AccumulatorBuilder {
         }
     }
 
-    /// The accumulator, with all sums zero.
     pub(crate) fn finish(mut self) -> ForceAccumulator {
         self.begin_parts(self.accumulator.subdomain.parts().end - 1);
         let mut accumulator = self.accumulator;

@@ -14,14 +14,12 @@ const MIN_CHUNKS_PER_PART: usize = 4;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Subdomain {
     parts: Range<usize>,
-    /// Parts, chunks and grains in all subdomains.
     total_parts: usize,
     total_chunks: usize,
     total_grains: usize,
 }
 
 impl Subdomain {
-    /// All grains in one subdomain.
     pub(crate) fn whole(grains: usize) -> Self {
         let chunks = grains.div_ceil(CHUNK_SIZE);
         // Two, three, four or six threads get equal numbers of parts.
@@ -47,22 +45,18 @@ impl Subdomain {
         })
     }
 
-    /// Parts of the subdomain.
     pub(crate) fn parts(&self) -> Range<usize> {
         self.parts.clone()
     }
 
-    /// Chunks of the subdomain.
     pub(crate) fn chunks(&self) -> Range<usize> {
         self.chunks_of(self.parts.start).start..self.chunks_of(self.parts.end - 1).end
     }
 
-    /// Grains of the subdomain.
     pub(crate) fn grains(&self) -> Range<usize> {
         self.grains_of(self.parts.start).start..self.grains_of(self.parts.end - 1).end
     }
 
-    /// The part that a chunk belongs to.
     pub(crate) fn part_of(&self, chunk: usize) -> usize {
         ((chunk + 1) * self.total_parts - 1) / self.total_chunks
     }

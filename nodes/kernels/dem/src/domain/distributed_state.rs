@@ -28,18 +28,15 @@ pub(crate) struct DistributedState {
 /// Position and twist of a grain.
 type HaloRow = (F64x4, F64x8);
 
-/// The copy of one subdomain.
 #[derive(Clone, Debug, Default)]
 struct SubdomainState {
     position: Vec<F64x4>,
     twist: Vec<F64x8>,
-    /// Grains of the subdomain.
     owned: Range<usize>,
     /// Grains of other subdomains that its pairs reach to, each with its row in the halo.
     ghosts: Vec<(u32, u32)>,
 }
 
-/// One subdomain's copy, for its thread.
 pub(crate) struct SubdomainView<'a> {
     copy: &'a mut SubdomainState,
     /// The halo grains of the subdomain, and where to send them.
@@ -54,7 +51,6 @@ impl DistributedState {
         (self.is_current, self.is_authoritative) = (false, false);
     }
 
-    /// Frees the copies.
     pub(crate) fn clear(&mut self) {
         debug_assert!(!self.is_authoritative, "a state is lost");
         if !self.copies.is_empty() {
@@ -78,7 +74,6 @@ impl DistributedState {
         (self.is_current, self.is_authoritative) = (true, false);
     }
 
-    /// One view per subdomain, for the threads.
     pub(crate) fn views(&mut self) -> impl Iterator<Item = SubdomainView<'_>> {
         let (mut halo, mut sending, sent) = (&self.halo[..], &mut self.sending[..], &self.sent[..]);
         self.copies.iter_mut().map(move |copy| {
@@ -96,7 +91,6 @@ impl DistributedState {
         self.is_authoritative = true;
     }
 
-    /// Multiplies all velocities.
     pub(crate) fn scale_velocities(&mut self, factor: f64) {
         let scale = |t: &mut F64x8| t.0[..4].iter_mut().for_each(|v| *v *= factor);
         self.copies.iter_mut().for_each(|copy| copy.twist[copy.owned.clone()].iter_mut().for_each(scale));
@@ -136,7 +130,6 @@ impl SubdomainState {
 }
 
 impl SubdomainView<'_> {
-    /// Reads the ghosts from the halo.
     pub(crate) fn receive_halo(&mut self) {
         for &(grain, row) in &self.copy.ghosts {
             let (position, twist) = &self.sent[row as usize];

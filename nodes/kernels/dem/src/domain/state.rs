@@ -4,19 +4,16 @@ use crate::simd::simd_f64::{CHUNK_SIZE, F64x4, F64x8};
 use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 
-/// A vector as a row of a table.
 #[inline(always)]
 pub(crate) fn row(v: &Vec3) -> F64x4 {
     [v.x, v.y, v.z, 0.0]
 }
 
-/// The vector in a row.
 #[inline(always)]
 pub(crate) fn vector(row: &F64x4) -> Vec3 {
     Vec3::new(row[0], row[1], row[2])
 }
 
-/// Velocity and spin as a row.
 fn twist(velocity: &Vec3, spin: &Vec3) -> F64x8 {
     F64x8([velocity.x, velocity.y, velocity.z, 0.0, spin.x, spin.y, spin.z, 0.0])
 }
@@ -49,7 +46,6 @@ pub(crate) struct State {
 }
 
 impl State {
-    /// The grains of a packing.
     pub(crate) fn of(packing: &Packing) -> Self {
         let radius = &packing.radii;
         let mass = |r: &f64| packing.material.sphere_mass(*r);
@@ -72,12 +68,10 @@ impl State {
         }
     }
 
-    /// Number of grains.
     pub(crate) fn len(&self) -> usize {
         self.radius.len()
     }
 
-    /// True if all grains are of one size.
     pub(crate) fn is_monodisperse(&self) -> bool {
         self.smallest_radius == self.largest_radius
     }
@@ -114,7 +108,6 @@ pub(crate) struct GrainsMut<'a> {
 }
 
 impl GrainsMut<'_> {
-    /// Splits off the first `count` grains; the others stay.
     pub(crate) fn split_off_front(&mut self, count: usize) -> Self {
         let (position, positions) = std::mem::take(&mut self.position).split_at_mut(count);
         let (twist, twists) = std::mem::take(&mut self.twist).split_at_mut(count);
@@ -122,13 +115,11 @@ impl GrainsMut<'_> {
         Self { position, twist }
     }
 
-    /// Overwrites these grains with others.
     pub(crate) fn copy_from(&mut self, position: &[F64x4], twist: &[F64x8]) {
         self.position.copy_from_slice(position);
         self.twist.copy_from_slice(twist);
     }
 
-    /// Grains of chunk `c`.
     pub(crate) fn chunk(&mut self, c: usize) -> GrainsMut<'_> {
         let range = c * CHUNK_SIZE..((c + 1) * CHUNK_SIZE).min(self.position.len());
         GrainsMut { position: &mut self.position[range.clone()], twist: &mut self.twist[range] }

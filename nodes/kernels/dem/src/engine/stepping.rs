@@ -183,7 +183,6 @@ impl Engine {
         EngineError::Unstable { step: s.step, grain: s.ids[grain], speed, time_step: s.time_step, cause }
     }
 
-    /// Updates the lists of pairs after a motion.
     fn update_pairs(&mut self, stats: &SpeedStats) -> Result<(), EngineError> {
         let displacement = stats.largest_square_speed().sqrt() * self.state.time_step;
         let strain = self.state.rate.norm() * self.state.time_step;

@@ -8,7 +8,6 @@ use grainlab_core::effective_radius;
 use grainlab_core::lanes::LaneVec3;
 use grainlab_engine::EngineSettings;
 
-/// Input of the force kernel from the state and the settings.
 #[derive(Clone, Copy)]
 pub(crate) struct ForceInput<'a, S> {
     pub(crate) position: &'a [F64x4],
@@ -65,7 +64,6 @@ pub(crate) fn sizes_of<P, L: SimdF64>(
     }
 }
 
-/// The grains of some lanes of a block.
 #[derive(Clone, Copy)]
 pub(crate) struct GrainIndices<'a, L> {
     pub(crate) i: CheckedIndices<'a, L>,
@@ -85,7 +83,6 @@ impl<'a, L: SimdF64> GrainIndices<'a, L> {
     }
 }
 
-/// The geometry of some lanes of a block.
 pub(crate) struct Geometry<L: SimdF64> {
     pub(crate) radius: [L; 2],
     pub(crate) branch: LaneVec3<L>,

@@ -38,7 +38,6 @@ pub(crate) fn forces_once<S: LawStage>(
     ForceKernel::<S> { input, chunk, with_virial }.run::<f64>()
 }
 
-/// A law stage, run over a chunk.
 pub(crate) struct ForceKernel<'a, S: LawStage> {
     pub(crate) input: ForceInput<'a, S::Springs>,
     pub(crate) chunk: PairChunk<'a>,

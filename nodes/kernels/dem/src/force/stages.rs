@@ -52,15 +52,11 @@ impl BlockScratch {
 /// are on the second grains.
 pub(crate) type Rolling<'a> = (&'a mut RollingBlock, &'a mut BlockVectors);
 
-/// The law stage of a phase.
 pub(crate) trait LawStage {
-    /// True if contacts exert moments.
     const MOMENTS: bool;
     /// True if grains differ in size.
     const SIZES: bool;
-    /// True if contacts resist rolling.
     const ROLLS: bool = Self::MOMENTS && <Self::Springs as ContactSprings>::ROLLS;
-    /// The springs of the contact law.
     type Springs: ContactSprings;
 
     /// Second stage: forces of some lanes of a block.
@@ -74,7 +70,6 @@ pub(crate) trait LawStage {
     );
 }
 
-/// All pairs of a chunk.
 #[inline(always)]
 pub(super) fn run_stages<S: LawStage, L: SimdF64>(
     input: &ForceInput<'_, S::Springs>,

@@ -26,7 +26,6 @@ impl Virial {
         }
     }
 
-    /// Adds f ⊗ l.
     #[inline(always)]
     fn add_dyad(&mut self, f: [f64; 3], l: &F64x4) {
         for (row, f) in self.rows.iter_mut().zip(f) {

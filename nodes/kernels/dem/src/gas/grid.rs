@@ -2,14 +2,12 @@
 
 use grainlab_core::Vec3;
 
-/// Number that means no grain.
 pub(super) const NO_GRAIN: u32 = u32::MAX;
 
 /// Index of one of the 27 nearest images: 9(a + 1) + 3(b + 1) + c + 1 for the cell vectors a, b, c. The opposite image has
 /// index 26 − this.
 pub(super) type Image = u32;
 
-/// Cell vectors of an image.
 pub(super) fn cell_vectors(image: Image) -> [i32; 3] {
     let image = image as i32;
     [image / 9 - 1, image / 3 % 3 - 1, image % 3 - 1]
@@ -36,7 +34,6 @@ pub(super) struct Grid {
     members: Vec<u32>,
     /// Number of grains in each cell.
     filled: Vec<u32>,
-    /// Cell of each grain.
     cell_of: Vec<u32>,
 }
 
@@ -70,7 +67,6 @@ impl Grid {
         (cell[0] * self.count[1] + cell[1]) * self.count[2] + cell[2]
     }
 
-    /// Puts a grain into the cell that contains `x`.
     pub(super) fn place(&mut self, grain: usize, x: &[f64; 3]) {
         let cell = self.cell(x);
         if self.cell_of[grain] == cell {

@@ -9,7 +9,6 @@ use grainlab_core::OVERLAP_LIMIT;
 use grainlab_core::contact::ContactSprings;
 use grainlab_core::lanes::{LaneVec3, Lanes};
 
-/// The contacts of one chunk.
 pub(super) struct ChunkContacts<'a, S> {
     pub(super) input: ForceInput<'a, S>,
     pub(super) blocks: &'a [PairBlock],
@@ -22,7 +21,6 @@ pub(super) struct ChunkContacts<'a, S> {
 /// Forces of the slots of one block, component by component, N.
 pub(super) type SlotForces = [[f64; BLOCK_SIZE]; 3];
 
-/// Sums over contacts.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ContactSums {
     /// Σ f ⊗ l (xx, yy, zz, yz, xz, xy, zy, zx, yx; J), Σ |f| (N), and the energy of each unit strain component (J).
@@ -39,7 +37,6 @@ impl ContactSums {
     }
 }
 
-/// Sums over the contacts of one chunk.
 pub(super) fn sum_chunk<S: ContactSprings>(chunk: ChunkContacts<'_, S>, simd: Simd) -> ContactSums {
     if chunk.sizes.is_empty() {
         simd.run(SumKernel::<S, false> { chunk })

@@ -28,7 +28,6 @@ pub(super) fn contact_works(
     state.law.visit(&state.material, ContactWorks { state, contacts, settings, rate })
 }
 
-/// Forces and energies of all contacts, under any law.
 struct ContactWorks<'a> {
     state: &'a State,
     contacts: &'a Contacts,

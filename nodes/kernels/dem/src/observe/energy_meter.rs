@@ -19,7 +19,6 @@ use crate::pairs::types::Pair;
 use grainlab_core::{Mat3, Vec3};
 use grainlab_engine::{EnergyBalance, EngineSettings, Features};
 
-/// Sums the works of an engine's steps.
 #[derive(Clone, Debug)]
 pub(crate) struct EnergyMeter {
     /// The works; energies other than `start` are zero.
@@ -72,7 +71,6 @@ impl EnergyMeter {
         self.works.integration += works.integration;
     }
 
-    /// The balance at the present state.
     pub(crate) fn balance(
         &self,
         state: &State,
@@ -90,7 +88,6 @@ impl EnergyMeter {
     }
 }
 
-/// Adds `factor` times the works of a kick.
 fn add(sum: &mut EnergyBalance, kick: &EnergyBalance, factor: f64) {
     sum.strain_work += factor * kick.strain_work;
     sum.normal_damping += factor * kick.normal_damping;

@@ -31,7 +31,6 @@ pub struct Observables {
     pub unbalanced: f64,
 }
 
-/// Observes the present contacts. The state does not change.
 pub(crate) fn observe(
     state: &State,
     contacts: &Contacts,
@@ -63,7 +62,6 @@ pub(crate) fn observe(
     })
 }
 
-/// The sums over all contacts, compiled for each contact law.
 struct SumContacts<'a> {
     state: &'a State,
     contacts: &'a Contacts,

@@ -8,7 +8,6 @@ use grainlab_core::effective_radius;
 use grainlab_core::lanes::LaneVec3;
 use grainlab_core::{Mat3, Vec3};
 
-/// Position and motion of a pair.
 pub(super) struct PairMotion {
     pub(super) contact: ContactKinematics<f64>,
     /// R* (ω_j − ω_i) × n, m/s.

@@ -5,7 +5,6 @@ use crate::pairs::contacts::Contacts;
 use crate::simd::simd_f64::BLOCK_SIZE;
 use grainlab_core::backbone;
 
-/// Forces on grains, and which grains are rattlers.
 pub(super) struct NetForces {
     /// True for each grain that is no rattler.
     backbone: Vec<bool>,

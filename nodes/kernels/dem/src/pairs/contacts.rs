@@ -33,7 +33,6 @@ impl Contacts {
         Self { images, subdomains: vec![pairs.finish()] }
     }
 
-    /// The contacts of a packing.
     pub(crate) fn from_packing(packing: &Packing, state: &State) -> Self {
         let saved = |c: &Contact| {
             let (r_i, r_j) = (state.radius[c.i as usize], state.radius[c.j as usize]);

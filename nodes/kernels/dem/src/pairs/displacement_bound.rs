@@ -17,7 +17,6 @@ impl DisplacementBound {
         Self { skin, displacement: 0.0, strain: 0.0, steps: 0 }
     }
 
-    /// Adds one step.
     pub(crate) fn advance(&mut self, displacement: f64, strain: f64) {
         self.strain += strain;
         // Earlier displacements are strained too.

@@ -56,7 +56,6 @@ impl Grid {
         Ok(grid)
     }
 
-    /// Sorts the grains into their bins.
     fn sort(&mut self, state: &State) {
         let bins = self.bins.iter().product::<i32>() as usize;
         let (first, members) = sorted_into_bins(bins, self.bin_of.iter().map(|(bin, _)| self.index(*bin)));

@@ -19,7 +19,6 @@ impl Images {
         Self { number: vec![[i8::MIN; 3]], offset: vec![[far, far, far, 0.0]], index: HashMap::new() }
     }
 
-    /// Row of `image` in the table.
     pub(crate) fn index(&mut self, image: [i8; 3], cell: &Cell) -> u32 {
         *self.index.entry(image).or_insert_with(|| {
             self.number.push(image);

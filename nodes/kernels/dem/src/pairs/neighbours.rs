@@ -28,7 +28,6 @@ pub(crate) struct Neighbours {
 }
 
 impl Neighbours {
-    /// Finds the list, and the table of images that it refers to.
     pub(crate) fn find(state: &State, skin: f64) -> Result<(Self, Images), EngineError> {
         let mut grid = Grid::new(state, 2.0 * state.largest_radius + skin)?;
         let mut rows = ImageRows::new(state);
@@ -121,7 +120,6 @@ struct HistoryCursor<'a> {
 }
 
 impl<'a> HistoryCursor<'a> {
-    /// For the pairs of subdomain `k`.
     fn new(old: &'a Contacts, k: usize, subdomain: &Subdomain) -> Self {
         let blocks = match old.subdomains.get(k) {
             Some(pairs) if pairs.subdomain == *subdomain => vec![(&pairs.blocks[..], &pairs.rolling[..])],

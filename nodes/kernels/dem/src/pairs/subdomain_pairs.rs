@@ -31,7 +31,6 @@ pub(crate) struct SubdomainPairs {
     accumulator: ForceAccumulator,
 }
 
-/// The pairs of one part, to be evaluated chunk after chunk.
 pub(crate) struct PartPairs<'a> {
     blocks: &'a mut [PairBlock],
     rolling: &'a mut [RollingBlock],
@@ -46,12 +45,10 @@ pub(crate) struct PartPairs<'a> {
 }
 
 impl PartPairs<'_> {
-    /// Number of chunks.
     pub(crate) fn chunks(&self) -> usize {
         self.chunk_start.len() - 1
     }
 
-    /// Chunk `c` of the part.
     pub(crate) fn chunk(&mut self, c: usize) -> PairChunk<'_> {
         let blocks = self.chunk_start[c] as usize..self.chunk_start[c + 1] as usize;
         let first = self.chunk_start[0] as usize;
@@ -97,13 +94,12 @@ impl SubdomainPairs {
         self.chunk_start[self.subdomain.chunks().start] as usize
     }
 
-    /// Sets all tangential and rolling forces to zero.
     pub(crate) fn clear_history(&mut self) {
         self.blocks.iter_mut().for_each(|block| block.history = [[0.0; BLOCK_SIZE]; 3]);
         self.rolling.fill(RollingBlock::default());
     }
 
-    /// The pairs of one part. Earlier parts must be complete.
+    /// Earlier parts must be complete.
     pub(crate) fn part_mut(&mut self, part: usize) -> PartPairs<'_> {
         let chunks = self.subdomain.chunks_of(part);
         let chunks = chunks.start..chunks.end + 1;
@@ -120,7 +116,6 @@ impl SubdomainPairs {
         }
     }
 
-    /// The stored forces on the grains of each owned chunk.
     pub(crate) fn stored_forces(&self) -> impl Iterator<Item = StoredForces<'_>> {
         self.accumulator.chunks()
     }
@@ -137,7 +132,6 @@ pub(crate) struct PairsBuilder {
 }
 
 impl PairsBuilder {
-    /// For a subdomain, with about as many pairs as expected.
     pub(crate) fn new(state: &State, subdomain: Subdomain, expected: usize) -> Self {
         let blocks = expected / BLOCK_SIZE + subdomain.chunks().len() + 2;
         let pairs = SubdomainPairs {
@@ -161,7 +155,7 @@ impl PairsBuilder {
         }
     }
 
-    /// Adds a pair. Pairs must come sorted by (i, j, image).
+    /// Pairs must come sorted by (i, j, image).
     pub(crate) fn push(&mut self, state: &State, images: &Images, pair: Pair) {
         let (i, j) = (pair.i as usize, pair.j as usize);
         while self.pairs.chunk_start.len() <= i / CHUNK_SIZE {
@@ -232,7 +226,6 @@ impl PairsBuilder {
         self.filled = 0;
     }
 
-    /// The next pairs belong to the next chunk.
     fn end_chunk(&mut self) {
         let pairs = &mut self.pairs;
         pairs.chunk_start.push(pairs.blocks.len() as u32);
@@ -240,7 +233,6 @@ impl PairsBuilder {
         self.filled = BLOCK_SIZE;
     }
 
-    /// The pairs, with the layout of their sums.
     pub(crate) fn finish(mut self) -> SubdomainPairs {
         while self.pairs.chunk_start.len() <= self.pairs.subdomain.chunks().end {
             self.end_chunk();

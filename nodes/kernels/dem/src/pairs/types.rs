@@ -6,7 +6,6 @@ use grainlab_core::{Vec3, effective_radius};
 /// Row in the table of periodic images of the pairs that only pad a block. It is so far away that they never touch.
 pub(crate) const PADDING: u32 = 0;
 
-/// Block of eight pairs.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct PairBlock {
@@ -48,7 +47,6 @@ pub(crate) struct PeriodicPair {
     pub(crate) image: u32,
 }
 
-/// Pair of near grains.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair {
     pub(crate) i: u32,
@@ -69,7 +67,6 @@ pub(crate) struct History {
     pub(crate) rolling: Vec3,
 }
 
-/// A contact as it is saved.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SavedContact {
     pub(crate) i: u32,
@@ -78,14 +75,12 @@ pub(crate) struct SavedContact {
     pub(crate) history: History,
 }
 
-/// The pairs of one chunk, for the force kernel.
 pub(crate) struct PairChunk<'a> {
     pub(crate) blocks: &'a mut [PairBlock],
     /// Empty where contacts do not resist rolling.
     pub(crate) rolling: &'a mut [RollingBlock],
     /// Empty where grains are of one size.
     pub(crate) sizes: &'a [PairSizes],
-    /// Pairs across the faces of the cell.
     pub(crate) periodic: &'a [PeriodicPair],
     /// Accumulator rows, those of the chunk's grains first.
     pub(crate) sums: &'a mut [F64x8],
@@ -103,7 +98,6 @@ impl Pair {
 }
 
 impl PairBlock {
-    /// History of the contact in a lane.
     #[inline(always)]
     pub(crate) fn history(&self, rolling: Option<&RollingBlock>, lane: usize) -> History {
         let vector = |h: &[[f64; BLOCK_SIZE]; 3]| Vec3::new(h[0][lane], h[1][lane], h[2][lane]);

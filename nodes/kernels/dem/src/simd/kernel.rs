@@ -6,13 +6,10 @@ use std::marker::PhantomData;
 
 /// Work that can be done in any number of lanes. `run` must be inlined, so that it is compiled for the instruction set.
 pub(crate) trait Kernel {
-    /// Result of the kernel.
     type Output;
-    /// Does the work.
     fn run<L: SimdF64>(self) -> Self::Output;
 }
 
-/// A kernel in lanes of one width.
 pub(super) struct InLanes<K, L>(pub(super) K, pub(super) PhantomData<L>);
 
 impl<K: Kernel, L: SimdF64> Work for InLanes<K, L> {

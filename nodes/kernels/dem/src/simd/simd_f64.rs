@@ -44,7 +44,6 @@ impl<'a, L: SimdF64> CheckedIndices<'a, L> {
         self.indices[self.lane + k] as usize
     }
 
-    /// The bound that all indices are below.
     #[inline(always)]
     pub(crate) fn bound(&self) -> usize {
         self.bound
@@ -144,15 +143,12 @@ pub(crate) trait SimdF64: Lanes {
 
 /// Four numbers of one grain.
 pub(crate) trait SimdRow: Copy {
-    /// One number four times.
     fn splat(value: f64) -> Self;
     /// Numbers `at..at + 4`.
     fn load<const N: usize>(from: &[f64; N], at: usize) -> Self;
     /// Writes numbers `at..at + 4`.
     fn store<const N: usize>(self, to: &mut [f64; N], at: usize);
-    /// Sum of two rows.
     fn add(self, other: Self) -> Self;
-    /// Product, number by number.
     fn mul(self, other: Self) -> Self;
     /// `self` × `factor` + `addend`, rounded once.
     fn mul_add(self, factor: Self, addend: Self) -> Self;

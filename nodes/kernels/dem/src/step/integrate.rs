@@ -8,7 +8,6 @@ use crate::simd::simd_f64::{F64x4, F64x8, SimdF64, SimdRow};
 use grainlab_core::Mat3;
 use grainlab_engine::{EngineSettings, Features};
 
-/// Speeds of a step, for the checks that follow it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SpeedStats {
     /// Largest square of each velocity component, m²/s²; NaN is ignored.

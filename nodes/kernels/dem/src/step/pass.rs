@@ -21,20 +21,16 @@ use grainlab_core::contact::{ContactSprings, LawVisitor};
 use grainlab_engine::{Compute, EngineSettings, Features};
 use std::mem::take;
 
-/// Work of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PassKind {
-    /// Evaluates forces at the present positions.
     Forces,
     /// Evaluates forces with the tangential history as it is instead of one step further (after a resume).
     ForcesAsSaved,
     /// Moves all grains over one step, under the forces last evaluated.
     Motion,
-    /// Evaluates forces, and moves all grains over one step under them.
     ForcesAndMotion,
 }
 
-/// One pass over all grains.
 pub(crate) struct Pass<'a> {
     pub(crate) state: &'a mut State,
     pub(crate) copies: &'a mut DistributedState,
@@ -128,7 +124,6 @@ impl<S: ContactSprings> Grains<'_, S> {
     }
 }
 
-/// A pass over one subdomain.
 struct SubdomainPass<S> {
     kind: PassKind,
     kernel: ForceKernel<S>,
@@ -141,7 +136,6 @@ impl<S: ContactSprings> SubdomainPass<S> {
         matches!(self.kind, PassKind::Motion | PassKind::ForcesAndMotion)
     }
 
-    /// Virial and speeds of each owned part.
     fn run(&self, pairs: &mut SubdomainPairs, grains: &mut Grains<'_, S>) -> PartResults {
         if self.kind == PassKind::Motion {
             return self.motion(pairs, grains);
@@ -209,7 +203,6 @@ impl<S: ContactSprings> SubdomainPass<S> {
 
 type ForceKernel<S> = fn(Simd, ForceInput<'_, S>, PairChunk<'_>, bool) -> Virial;
 
-/// The force kernel compiled for these features.
 fn kernel_for<S: ContactSprings, const SIZES: bool>(
     settings: &EngineSettings,
     as_saved: bool,

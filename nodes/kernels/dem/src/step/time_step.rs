@@ -88,7 +88,6 @@ struct Springs<'a> {
     rolling: [f64; 2],
 }
 
-/// The springs and dashpots of the present contacts, under any law.
 struct CollectSprings<'a> {
     state: &'a State,
     contacts: &'a Contacts,
@@ -117,7 +116,6 @@ impl<'a> LawVisitor for CollectSprings<'a> {
 }
 
 impl Springs<'_> {
-    /// The load of a block.
     fn load(&self, block: &GrainBlock) -> Load {
         // The largest eigenvalue of one contact is that along it, or that across it, which also rotates the grain.
         let [stiffest, thickest] = self.ratios.map(|ratio| ((1.0 + INERTIA_RATIO) * ratio).max(1.0));

@@ -115,12 +115,10 @@ impl DeviatorLaw {
         Self { by_eps: [a0, a1, a2, a3, a4, a5, a6, a7], by_stress_ratio }
     }
 
-    /// Derivative by ε.
     pub(crate) fn by_eps(&self, z: f64, state: &NetworkState) -> f64 {
         dot(&self.by_eps, &Self::factors(z, state))
     }
 
-    /// Derivative by q/p.
     pub(crate) fn by_stress_ratio(&self, z: f64, state: &NetworkState) -> f64 {
         dot(&self.by_stress_ratio, &Self::stress_factors(z, state))
     }

@@ -62,7 +62,6 @@ pub(crate) struct Outside {
 }
 
 impl Outside {
-    /// Returns the note on an estimate at such a state.
     pub(crate) fn note(&self) -> Note {
         Note::state_outside_calibration(self.quantity, self.value, self.range[0], self.range[1])
     }
@@ -85,7 +84,6 @@ impl Outside {
 }
 
 impl Reach {
-    /// The quantities of this state that are beyond the ranges.
     pub(crate) fn outside(&self, pressure: f64, state: &NetworkState) -> Vec<Outside> {
         let size_spread = state.size_variance.max(0.0).sqrt();
         let stiffness_ratio = state.stiffness_ratio + REFERENCE_STIFFNESS_RATIO;

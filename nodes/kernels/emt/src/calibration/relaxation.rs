@@ -163,7 +163,6 @@ impl RelaxationCalibration {
         [scaled(&recipe, by_state), scaled(&scaled(&sample, &of_size), by_state)]
     }
 
-    /// Returns the covariance at this z, by its levels.
     pub(crate) fn at_z(z: f64, levels: &[Scatter; 2]) -> Scatter {
         let [of_recipe, of_sample] = ScatterLevels::weights(z);
         let [recipe, sample] = levels;

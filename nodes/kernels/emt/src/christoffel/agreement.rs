@@ -19,7 +19,6 @@ pub struct SpeedConflict {
     pub sigma: f64,
 }
 
-/// Agreement of the speeds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Agreement {
     /// Within their errors.

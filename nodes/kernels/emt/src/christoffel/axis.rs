@@ -136,7 +136,6 @@ pub fn find_axis(speeds: &[WaveSpeed]) -> Result<AxisEstimate, AxisError> {
 
 /// The error of a speed of weight 1.
 struct Noise {
-    /// Variance of this error.
     variance: f64,
     /// Degrees of freedom of its estimate; `None` if it was given.
     freedom: Option<usize>,

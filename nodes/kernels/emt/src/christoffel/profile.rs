@@ -16,7 +16,6 @@ const STEPS: usize = 40;
 const LONGEST: f64 = 0.3;
 const SHORTEST: f64 = 1e-8;
 
-/// Speeds with their weights.
 #[derive(Clone, Copy)]
 pub(super) struct Speeds<'a> {
     pub(super) measured: &'a [WaveSpeed],
@@ -34,7 +33,6 @@ pub(super) struct Stand {
 
 /// Derivatives with respect to tilts of the axis towards two perpendicular directions.
 pub(super) struct Tilts {
-    /// Directions of the tilts.
     pub(super) towards: [Vec3; 2],
     /// Second derivatives of half the weighted sum of squares of the best medium about each axis, 1/rad².
     pub(super) curvature: Matrix2<f64>,

@@ -40,7 +40,6 @@ pub(super) struct Ray {
     pub(super) named: bool,
 }
 
-/// The response of a medium to a ray.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Response {
     /// v² of the mode, m²/s².

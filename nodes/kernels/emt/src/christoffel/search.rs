@@ -18,7 +18,6 @@ const OFFSETS: [f64; 4] = [-0.6, -0.3, 0.3, 0.6];
 /// A 5 × 5 matrix over the scaled moduli.
 pub(super) type Square = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 
-/// Speeds with their weights.
 pub(super) struct Problem<'a> {
     rays: &'a [Ray],
     weights: &'a [f64],
@@ -41,7 +40,6 @@ pub(super) struct Point {
 }
 
 impl<'a> Problem<'a> {
-    /// Speeds along `rays`, each with its weight.
     pub(super) fn new(rays: &'a [Ray], weights: &'a [f64]) -> Self {
         let mean_square = |compressional: bool| {
             let squares = rays.iter().filter(|r| r.is_compressional() == compressional);

@@ -79,7 +79,6 @@ impl Model for EffectiveMedium {
     }
 }
 
-/// The medium of this structure in this state.
 fn medium(k: f64, eps: f64, conditions: &Conditions, calibration: &Calibration) -> Result<Medium, EmtError> {
     let missing = EmtError::Missing { model: NAME, missing: "the solid fraction" };
     let Measured { value: solid_fraction, .. } = conditions.solid_fraction.ok_or(missing)?;

@@ -26,7 +26,6 @@ use std::f64::consts::FRAC_PI_2;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FreeContact;
 
-/// Name of the model.
 pub(crate) const NAME: &str = "free-contact";
 
 /// p/E* of samples, and k_t/k_n of the packings that taught.

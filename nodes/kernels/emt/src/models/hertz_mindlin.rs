@@ -89,7 +89,6 @@ impl Model for HertzMindlin {
     }
 }
 
-/// Returns the note on the share of the contacts that stick in a shear wave.
 fn sticking_share(share: f64) -> Note {
     // To the rounding of its computation.
     let is_share = (-1e-9..=1.0 + 1e-9).contains(&share);

@@ -44,13 +44,11 @@ pub struct Posterior<'a> {
     pub(super) seed: u64,
     /// Points where the posterior is not 0.
     pub(super) points: Vec<Point>,
-    /// Number of points proposed.
     pub(super) proposed: usize,
     /// ln of the largest weight.
     pub(super) highest: f64,
 }
 
-/// One weighted point.
 pub(super) struct Point {
     pub(super) replicate: usize,
     /// ln of posterior over proposal.
@@ -142,7 +140,6 @@ impl<'a> Posterior<'a> {
         (point.ln_weight - self.highest).exp()
     }
 
-    /// Mean over the posterior.
     pub(super) fn expected(&self, value: impl Fn(&Point) -> f64) -> f64 {
         let (sum, total) = self.points.iter().fold((0.0, 0.0), |(sum, total), p| {
             let w = self.weight(p);

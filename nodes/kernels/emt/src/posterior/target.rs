@@ -19,7 +19,6 @@ pub(super) struct Target<'a> {
     moments: [Option<[f64; 2]>; FOLLOWING],
 }
 
-/// The target at one point.
 pub(super) struct TargetValue {
     pub(super) predicted: Predicted,
     pub(super) ln_likelihood: f64,

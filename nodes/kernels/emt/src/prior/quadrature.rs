@@ -8,9 +8,7 @@ use std::sync::LazyLock;
 pub(crate) struct Tilted {
     /// ln of the integral of the product.
     pub(crate) ln_mass: f64,
-    /// Mean of the product.
     pub(crate) mean: f64,
-    /// Variance of the product.
     pub(crate) variance: f64,
 }
 

@@ -33,9 +33,8 @@ pub(super) struct Component {
 /// The linear problem of a component.
 pub(super) struct Solution {
     pub(super) component: Component,
-    /// The model about the unknowns.
     pub(super) at: Linearised,
-    /// Predicted mean of the data, and their residual.
+    /// Data less their predicted mean.
     pub(super) residual: DVector<f64>,
     /// Inverse of the covariance of the data, S⁻¹, and S⁻¹ times the residual.
     pub(super) inverse: DMatrix<f64>,
@@ -50,7 +49,6 @@ pub(super) struct Solution {
 }
 
 impl Component {
-    /// Steps until the unknowns settle.
     fn settled(self, forward: &Forward<'_>, data: &DVector<f64>) -> Option<Solution> {
         let mut last = self.step(forward, data)?;
         for _ in 1..STEPS {
@@ -118,7 +116,6 @@ impl Solution {
     }
 }
 
-/// The mixture of all components.
 pub(super) struct Mixture<'a> {
     pub(super) forward: Forward<'a>,
     pub(super) data: DVector<f64>,
@@ -147,7 +144,6 @@ impl<'a> Mixture<'a> {
         Self { forward, data, solutions, weights }
     }
 
-    /// ln of the evidence.
     pub(super) fn ln_evidence(&self) -> f64 {
         let highest = self.solutions.iter().map(Solution::ln_weight).fold(f64::NEG_INFINITY, f64::max);
         highest + self.solutions.iter().map(|s| (s.ln_weight() - highest).exp()).sum::<f64>().ln()

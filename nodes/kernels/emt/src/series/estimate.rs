@@ -19,7 +19,6 @@ pub(super) const HIGHEST_Z: f64 = 6.6;
 /// Effective number of draws below which nothing is stated.
 pub(super) const FEWEST: f64 = 30.0;
 
-/// Seed of draws and simulations.
 pub(super) const SEED: u64 = 31;
 
 /// k_t/k_n closer than this to an end of its range is at it.

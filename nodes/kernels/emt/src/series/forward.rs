@@ -81,7 +81,6 @@ pub(super) struct Linearised {
     pub(super) by_unknowns: DMatrix<f64>,
     /// Slopes by the invariants, and the scatter of ε weighted by stiffness in a last column of zeros.
     pub(super) by_invariants: Vec<Slopes>,
-    /// Mean of z over the pressures.
     mean_z: f64,
 }
 
@@ -169,7 +168,6 @@ impl<'a> Forward<'a> {
         self.ratio() + 2
     }
 
-    /// Number of unknowns.
     pub(super) fn unknowns(&self) -> usize {
         self.eps() + if self.has_eps { self.count() } else { 0 }
     }

@@ -159,7 +159,6 @@ impl SeriesPrior {
         prior
     }
 
-    /// k_t/k_n of contacts that are known.
     pub(crate) fn known_ratio(&self) -> Option<f64> {
         self.known_ratio
     }

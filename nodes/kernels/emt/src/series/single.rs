@@ -17,9 +17,7 @@ pub(crate) const QUANTITIES: usize = 3;
 pub(crate) struct SingleEstimate {
     /// Marginal distributions of z, ε and ε weighted by stiffness; the last two hold where the speeds have directions.
     pub(crate) marginals: [Interval; QUANTITIES],
-    /// Covariance of these quantities.
     pub(crate) covariance: SMatrix<f64, QUANTITIES, QUANTITIES>,
-    /// True if ε is determined.
     pub(crate) has_eps: bool,
     /// Probability of a z beyond those that are stated.
     pub(crate) z_beyond: f64,

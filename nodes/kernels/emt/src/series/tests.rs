@@ -84,7 +84,6 @@ fn uniform(mut ranks: Vec<f64>) -> f64 {
     2.0 * (1..50).map(term).sum::<f64>()
 }
 
-/// Samples of each kind.
 const SAMPLES: usize = 24;
 
 #[test]

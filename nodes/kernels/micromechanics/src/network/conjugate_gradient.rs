@@ -185,14 +185,12 @@ impl<'a, T: Real, const G: bool> Descent<'a, T, G> {
     }
 }
 
-/// Start and end of a descent.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Goal {
     /// Squared norms of the residual at the start.
     pub(crate) squares: [f64; WIDTH],
     /// Squared norms at which it ends.
     pub(crate) targets: [f64; WIDTH],
-    /// Maximum number of iterations.
     pub(crate) limit: u32,
     /// Growth of a squared residual at which the descent ends, as it does at a direction that meets no resistance; none if it does at
     /// neither.

@@ -17,7 +17,6 @@ use super::spring_network::{ContactSpring, SpringNetwork};
 /// φ_x, φ_y, φ_z.
 pub(crate) type Rows<T> = [Row<T>; 6];
 
-/// A grain at rest.
 pub(crate) const fn still<T: Real>() -> Rows<T> {
     [[T::ZERO; WIDTH]; 6]
 }
@@ -47,7 +46,6 @@ pub(crate) struct Sweeps<T, const G: bool> {
 /// A symmetric block, row by row up to the diagonal.
 type Packed<T> = [T; 21];
 
-/// Place of an entry in a packed block.
 #[inline(always)]
 const fn place(row: usize, column: usize) -> usize {
     let (low, high) = if row < column { (row, column) } else { (column, row) };
@@ -119,7 +117,6 @@ impl<T: Real, const G: bool> Sweeps<T, G> {
         self
     }
 
-    /// Number of grains.
     #[inline(always)]
     pub(crate) fn grains(&self) -> usize {
         self.order.len()
@@ -139,8 +136,7 @@ impl<T: Real, const G: bool> Sweeps<T, G> {
         }
     }
 
-    /// One step of that, from the first grain to the last: returns u of grain `g` and subtracts its effect on
-    /// later grains from their entries.
+    /// Returns u of grain `g`, and subtracts its effect on later grains from their entries.
     #[inline(always)]
     pub(crate) fn forward_step(&self, g: usize, y: &mut [Rows<T>]) -> Rows<T> {
         let u = product(&self.inverse[g], &y[g]);
@@ -269,8 +265,7 @@ impl<T: Real> Half<T> {
         self.taken_off::<G>(a, self.levers, rest)
     }
 
-    /// `rest` of the earlier grain minus the effect of the motion `b` of the later one: the same with
-    /// exchanged levers.
+    /// As [`Self::push`], from the later grain to the earlier: with exchanged levers.
     #[inline(always)]
     fn pull<const G: bool>(&self, b: &Rows<T>, rest: Rows<T>) -> Rows<T> {
         let [earlier, later] = self.levers;
@@ -312,7 +307,6 @@ impl<T: Real> Half<T> {
     }
 }
 
-/// Product m x.
 #[inline(always)]
 fn product<T: Real>(m: &Packed<T>, x: &Rows<T>) -> Rows<T> {
     [

@@ -64,7 +64,6 @@ pub(crate) fn mul<T: Real>(mut a: Row<T>, b: Row<T>) -> Row<T> {
     a
 }
 
-/// a b + c.
 #[inline(always)]
 pub(crate) fn mul_add<T: Real>(mut a: Row<T>, b: Row<T>, c: Row<T>) -> Row<T> {
     for l in 0..WIDTH {

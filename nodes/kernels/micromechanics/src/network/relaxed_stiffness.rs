@@ -97,7 +97,6 @@ fn one_digit(value: f64) -> f64 {
     format!("{}e{unit}", (value / 10f64.powf(unit)).ceil()).parse().unwrap_or(value)
 }
 
-/// The stiffness at one tolerance.
 fn checked(
     network: &SpringNetwork,
     tolerance: f64,

@@ -182,7 +182,6 @@ impl<'a> Search<'a> {
         Some((value, eigen.eigenvectors.column(column).into_owned()))
     }
 
-    /// The soft motions of a group of grains.
     fn motions(&self, group: &BTreeSet<u32>) -> Vec<SoftMotion> {
         let eigen = self.eigen(group);
         let mut columns: Vec<usize> =

@@ -135,7 +135,6 @@ pub(crate) fn left<const L: usize>(
 struct Refinement<'a, const L: usize> {
     load: &'a [GrainDofs<L>],
     scale: &'a [f64; L],
-    /// Motions solved for directly.
     soft: &'a [SoftMotion],
     tolerance: f64,
     max_iterations: u32,
@@ -234,7 +233,6 @@ impl<'a, const L: usize> Refinement<'a, L> {
         self.look();
     }
 
-    /// True if more iterations are needed and allowed.
     fn goes_on(&self) -> bool {
         self.residual > self.tolerance && self.iterations < self.max_iterations
     }

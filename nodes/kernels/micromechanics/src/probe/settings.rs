@@ -27,13 +27,11 @@ impl Default for StrainProbe {
 }
 
 impl StrainProbe {
-    /// Friction while `packing` is probed.
     pub(super) fn friction_of(&self, packing: &Packing) -> f64 {
         let carried = if packing.friction > 0.0 { f64::INFINITY } else { 0.0 };
         self.friction.unwrap_or(carried)
     }
 
-    /// The settings, or the one out of range.
     pub(super) fn check(&self) -> Result<(), ProbeError> {
         let range = |name, value: f64, accept: bool, requirement| {
             if accept { Ok(()) } else { Err(ProbeError::Setting { name, value, requirement }) }

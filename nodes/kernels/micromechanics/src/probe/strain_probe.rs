@@ -105,8 +105,7 @@ pub fn strain_probe(packing: &Packing, settings: &StrainProbe) -> Result<StrainP
     Ok(StrainProbeResult { stiffness: Stiffness(stiffness), smooth, asymmetry, rest_steps, columns })
 }
 
-/// Mean change of a contact force by the affine strain over the mean contact force: the scale of unbalanced
-/// forces.
+/// Mean change of a contact force by the affine strain, over the mean contact force.
 fn strain_load(packing: &Packing, settings: &StrainProbe) -> Result<f64, ProbeError> {
     let grains = packing.grains();
     if packing.contacts.is_empty() {

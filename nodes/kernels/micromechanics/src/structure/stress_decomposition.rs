@@ -32,7 +32,6 @@ pub fn stress_decomposition(view: &PackingView<'_>, fabric: &Fabric) -> StressDe
     }
 }
 
-/// Sums over the contacts of a network.
 #[derive(Default)]
 struct Sums {
     contacts: u32,

@@ -24,7 +24,6 @@ pub(super) const STALLED: Duration = Duration::from_secs(30);
 /// Both limits for a process that is about to end.
 pub(super) const HURRIED: Duration = Duration::from_secs(5);
 
-/// Time for which a writer waits for the first credit of a reader in the graph.
 pub(super) const FIRST_CREDIT_LIMIT: Duration = Duration::from_secs(3);
 
 /// A part that a reader does not have this long after it was sent counts as lost.

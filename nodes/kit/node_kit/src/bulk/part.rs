@@ -32,10 +32,7 @@ impl Shape {
         }
     }
 
-    /// The shape of the body of a received part.
-    ///
-    /// # Errors
-    /// The part is corrupt, or its fields are inconsistent.
+    /// Fails if the part is corrupt, or its fields are inconsistent.
     pub(super) fn checked(part: &PackingChunk) -> Result<Self, PartError> {
         let (body, index) = (part.body, part.index);
         let found = crc_of(part);
@@ -86,7 +83,6 @@ impl Shape {
         (self.length as usize - self.start_of(index)).min(self.stride as usize)
     }
 
-    /// Part `index` of the body `bytes`, which has this shape.
     pub(super) fn cut(&self, bytes: &[u8], index: u32) -> PackingChunk {
         let start = self.start_of(index);
         let mut part = PackingChunk {

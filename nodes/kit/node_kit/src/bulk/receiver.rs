@@ -25,11 +25,9 @@ pub(super) struct PartOutcome {
     /// The body, if this part completes it, after its sequence number among those that the writer sent in parts.
     pub(super) whole: Option<(i64, Vec<u8>)>,
     pub(super) fault: Option<PartError>,
-    /// True for the first part of a body.
     pub(super) begins: bool,
 }
 
-/// The schedule of a repeated credit.
 #[derive(Debug)]
 struct Repetition {
     sent: Duration,
@@ -50,7 +48,6 @@ impl Repetition {
     }
 }
 
-/// One writer of parts.
 #[derive(Debug)]
 struct Source {
     latest_part: Duration,
@@ -83,7 +80,6 @@ impl Receiver {
         }
     }
 
-    /// Makes the credits to all writers due at once.
     pub(super) fn send_credits_now(&mut self, now: Duration) {
         self.sources.values_mut().for_each(|source| source.credit = Repetition::new(now));
         self.broadcast = Repetition::new(now);
@@ -128,7 +124,6 @@ impl Receiver {
         due.map(credit).collect()
     }
 
-    /// The time at which the next credit is due.
     pub(super) fn due(&self) -> Duration {
         self.sources.values().map(|source| source.credit.due).min().unwrap_or(self.broadcast.due)
     }

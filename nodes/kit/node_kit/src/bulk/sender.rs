@@ -55,7 +55,6 @@ impl Sender {
         self.hurries = true;
     }
 
-    /// Sets the next body, which replaces the previous one.
     pub(super) fn offer(&mut self, now: Duration, bytes: Vec<u8>) {
         self.bodies += 1;
         let shape = Shape::of(self.bodies, &bytes);
@@ -67,7 +66,6 @@ impl Sender {
         }
     }
 
-    /// True if there is no body to send.
     pub(super) fn is_idle(&self) -> bool {
         self.shape.is_none()
     }
@@ -116,7 +114,6 @@ impl Sender {
         self.readers.insert(from, reader);
     }
 
-    /// The next part that may be sent now.
     pub(super) fn next_part(&mut self, now: Duration) -> Option<PackingChunk> {
         let shape = self.shape?;
         let index = match self.again.pop_first() {

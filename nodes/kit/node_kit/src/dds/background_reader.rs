@@ -53,7 +53,6 @@ impl BackgroundReader {
         Ok(Self { shared, thread: Some(thread) })
     }
 
-    /// Records that the node uses the bus now.
     pub(super) fn seen(&self) {
         self.shared.last_seen.store(self.shared.start.elapsed().as_nanos() as u64, Ordering::Relaxed);
     }

@@ -44,7 +44,6 @@ struct Reader {
     inbox: Arc<Mutex<Inbox>>,
     guid: Guid,
     topic: String,
-    /// Type that its samples are decoded as.
     info: TypeInfo,
     /// It asks for the messages that writers offered before they were matched.
     latched: bool,
@@ -167,7 +166,6 @@ impl DdsBus {
         Ok(())
     }
 
-    /// Starts the standard services of the node.
     pub(crate) fn serve(&mut self) -> Result<(), BusError> {
         self.services = Some(ServiceThread::start(&self.node, self.declared.clone(), self.sim_time.clone())?);
         self.unannounced = true;
@@ -254,7 +252,6 @@ impl DdsBus {
     }
 }
 
-/// The name of a ROS topic in DDS.
 fn wire_name(resolved: &str) -> String {
     format!("rt{resolved}")
 }

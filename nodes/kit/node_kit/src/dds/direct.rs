@@ -84,7 +84,6 @@ impl Network {
     }
 }
 
-/// The ros2-client context of one process of a run.
 pub(super) fn context(network: Network, prefix: [u8; 12], gate: &Arc<Gate>) -> Result<Context, BusError> {
     let create = || {
         let [filter, listener, readers, reception] = std::array::from_fn(|_| Arc::clone(gate));
@@ -124,7 +123,6 @@ struct RawPayload {
     big_endian: bool,
 }
 
-/// The adapter between RustDDS and bytes.
 struct RawAdapter;
 
 /// Restores the header that RustDDS removed, so that a body has all bytes of the sample.
@@ -205,7 +203,6 @@ const STREAM_WINDOW: u32 = 8192;
 /// Unacknowledged samples of a latched topic: these are megabytes each, and a few per minute.
 const LATCHED_WINDOW: u32 = 256;
 
-/// Maximum number of unacknowledged samples of a writer of `topic`.
 pub(super) fn window(topic: &Topic) -> u32 {
     let window = if topic.qos.transient_local && topic.qos.depth < LATCHED_WINDOW {
         LATCHED_WINDOW
@@ -343,7 +340,6 @@ impl RawPublisher {
 pub(super) enum TakeFailure {
     /// The representation is not CDR; the next call takes the sample after it.
     Representation(String),
-    /// The reader failed.
     Other(String),
 }
 

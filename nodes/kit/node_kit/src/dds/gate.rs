@@ -65,7 +65,6 @@ impl Gate {
         lock(&self.announcements).of(&reader, latched)
     }
 
-    /// True if one of our readers accepts a sample of this writer.
     pub(super) fn takes(&self, writer: Guid, reader: Guid) -> bool {
         let mut admission = lock(&self.admission);
         if admission.admits(&writer.participant()) {
@@ -82,12 +81,10 @@ impl Gate {
         taken
     }
 
-    /// True if endpoints of this participant count.
     pub(super) fn admits(&self, guid: &Guid) -> bool {
         lock(&self.admission).admits(&guid.participant())
     }
 
-    /// True if endpoints of the participant with this GUID prefix count.
     pub(super) fn admits_prefix(&self, prefix: &[u8]) -> bool {
         <&Participant>::try_from(prefix).is_ok_and(|prefix| lock(&self.admission).admits(prefix))
     }

@@ -36,7 +36,6 @@ impl Follower {
         changed
     }
 
-    /// True if the graph changed since the last call.
     pub(super) fn take_changed(&mut self) -> bool {
         std::mem::take(&mut self.changed)
     }
@@ -102,7 +101,6 @@ impl Endpoints {
             .collect()
     }
 
-    /// Why the messages of a writer must not be read as those of a type.
     pub(super) fn misfit(&self, writer: &Guid, info: &TypeInfo) -> Option<String> {
         let (_, offer) = self.writers.get(writer)?;
         offer.as_ref()?.misfit(info)

@@ -2,7 +2,6 @@
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, ToSocketAddrs};
 
-/// Maximum number of hosts.
 const MOST: usize = 16;
 
 /// Other hosts that are announced to by unicast, with or without multicast: at most 16 IPv4 addresses.

@@ -8,12 +8,10 @@ use std::time::Duration;
 /// Longest wait without a look at the request to stop, which a signal handler sets without a call.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// An alarm that any thread rings.
 #[derive(Debug)]
 pub(super) struct Alarm {
     called: Mutex<bool>,
     rings: Condvar,
-    /// Request of the user to stop.
     pub(super) stop: Arc<AtomicBool>,
 }
 

@@ -42,7 +42,6 @@ pub(super) struct Reader {
     pub(super) alive: bool,
 }
 
-/// The GUID of a participant's endpoint.
 pub(super) fn writer_id(participant: Participant, entity: usize) -> Guid {
     let mut bytes = [0; 16];
     bytes[..12].copy_from_slice(&participant);
@@ -62,7 +61,6 @@ impl MemoryState {
         }
     }
 
-    /// Time of the next arrival of a sample in transit, if any.
     pub(super) fn next_arrival(&self) -> Option<Duration> {
         let now = self.time.transit;
         let next = |r: &Reader| r.queue.iter().map(|(due, _)| *due).find(|due| *due > now);

@@ -7,7 +7,6 @@ use std::path::Path;
 
 const PARAMETERS_KEY: &str = "ros__parameters";
 
-/// A parameter of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Given {
     /// Name, groups joined by dots.

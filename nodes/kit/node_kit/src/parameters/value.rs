@@ -7,7 +7,6 @@ pub use ros2_client::ParameterValue;
 #[error("{0}")]
 pub struct ParameterError(pub(super) String);
 
-/// The ROS 2 name of the value's type.
 pub(crate) fn type_name(value: &ParameterValue) -> &'static str {
     match value {
         ParameterValue::NotSet => "nothing",

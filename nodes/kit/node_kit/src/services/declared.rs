@@ -9,7 +9,6 @@ use ros2_client::parameters::raw::ParameterDescriptor;
 pub(crate) const USE_SIM_TIME: &str = "use_sim_time";
 
 impl Parameters {
-    /// The options of a ros2-client node that declares them.
     pub(crate) fn node_options(&self) -> NodeOptions {
         let [checks, sets] = [self.clone(), self.clone()];
         // `/rosout` is a topic of the bus, like all others; our own servers know descriptions and both service mappings.
@@ -50,7 +49,6 @@ impl Parameters {
         self.snapshot().get(USE_SIM_TIME) == Some(&ParameterValue::Boolean(true))
     }
 
-    /// Checks that all of these may be set together.
     pub(super) fn check_all<'a>(
         &self,
         values: impl IntoIterator<Item = (&'a str, ParameterValue)>,

@@ -44,7 +44,6 @@ pub(super) fn unknown(name: &str) -> ParameterDescriptor {
     }
 }
 
-/// Why most parameters cannot change while a node runs.
 pub(super) const FIXED: &str =
     "read-only: what a run computes and records follows from the values at its start; start the node with -p";
 

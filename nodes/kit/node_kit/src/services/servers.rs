@@ -29,7 +29,6 @@ const NAME: usize = 255;
 
 const TYPE_DESCRIPTION: (&str, &str) = ("type_description_interfaces", "GetTypeDescription");
 
-/// The servers, and what they answer from.
 pub(super) struct NodeServers {
     list: Server<ListParametersRequest, ListParametersResponse>,
     get: Server<GetParametersRequest, GetParametersResponse>,

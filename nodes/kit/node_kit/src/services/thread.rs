@@ -21,7 +21,6 @@ pub(crate) struct ServiceThread {
 }
 
 impl ServiceThread {
-    /// Creates the servers and starts to answer.
     pub(crate) fn start(
         node: &Arc<Mutex<Node>>,
         declared: Parameters,

@@ -30,7 +30,6 @@ fn stated(c: &ChannelInfo) -> Stated<'_> {
 }
 
 impl<'a> Channels<'a> {
-    /// Collects the wanted channels of all recordings.
     pub(super) fn of(
         recordings: &'a [Recording],
         is_wanted: &dyn Fn(&ChannelInfo) -> bool,
@@ -82,7 +81,6 @@ impl<'a> Channels<'a> {
     }
 }
 
-/// The error that a topic has other fields in another recording.
 fn differs(kept: &ChannelInfo, from: &Path, other: &ChannelInfo, path: &Path) -> Failure {
     let (topic, from, path) = (&other.topic, from.display(), path.display());
     if kept.ros_type == other.ros_type && kept.is_without_definition() != other.is_without_definition() {

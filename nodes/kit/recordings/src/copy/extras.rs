@@ -57,7 +57,6 @@ impl Extras {
 /// Source of an item: the number of its recording, and the number of the file in the recording.
 type Origin = (usize, usize);
 
-/// The items of a kind in a copy.
 struct Kept<T> {
     kind: &'static str,
     is_same: fn(&T, &T) -> bool,

@@ -16,7 +16,6 @@ use crate::reader::{ChannelInfo, FileCount, Message, Recording, StoredFile};
 use crate::writer::TopicSpec;
 use grainlab_console::Failure;
 
-/// Bytes collected before they are passed to the system.
 const BUFFER: usize = 1 << 20;
 
 pub(super) struct Output {
@@ -78,7 +77,6 @@ impl Output {
         run(&mut self.mcap).map_err(|e| cannot(&self.path, action)(reason(e)))
     }
 
-    /// Declares the next channel.
     pub(super) fn declare(&mut self, channel: &ChannelInfo) -> Result<(), Failure> {
         let id = self.with("declare a topic", |mcap| channel.declare(mcap))?;
         self.channels.push((id, channel.topic.clone()));

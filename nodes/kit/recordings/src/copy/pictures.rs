@@ -11,7 +11,6 @@ use super::channels::Channels;
 use crate::reader::{ChannelInfo, Message, StoredDefinition};
 use crate::writer::TopicSpec;
 
-/// The topics of pictures of a copy.
 #[derive(Default)]
 pub(super) struct Pictures {
     /// By the place of a topic with packings, that of its first picture; the others come next.
@@ -23,7 +22,6 @@ pub(super) struct Pictures {
 }
 
 impl Pictures {
-    /// Those of all topics with packings.
     pub(super) fn of(copied: &Channels<'_>) -> Result<Self, Failure> {
         let mut all = Self::default();
         for (place, channel) in copied.list.iter().enumerate() {
@@ -48,8 +46,7 @@ impl Pictures {
         Ok(all)
     }
 
-    /// The place and the bytes of each picture of a message of the channel at `place`: none if it has no packing, or the
-    /// packing is not valid, which is noted.
+    /// Place and bytes of each picture of a message; none without a packing, or for an invalid one, which is noted.
     pub(super) fn made(&mut self, place: usize, message: &Message) -> Vec<(usize, Vec<u8>)> {
         let Some(first) = self.places.get(&place) else { return Vec::new() };
         match message.own_bytes().and_then(|bytes| packing(&bytes)) {

@@ -31,7 +31,6 @@ pub(super) struct GrainTable {
     pub(super) spins: Vec<Vec3>,
     /// Line of each grain, counted from 1.
     pub(super) lines: Vec<usize>,
-    /// Coordinates as printed.
     pub(super) printed: Printed,
     /// kg, where the file has them; else empty.
     pub(super) masses: Vec<f64>,
@@ -41,7 +40,6 @@ pub(super) struct GrainTable {
     pub(super) replaced: Option<(f64, f64)>,
 }
 
-/// Other known properties of the state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moment {
     pub(super) step: u64,
@@ -237,7 +235,6 @@ pub(super) fn packing(
     Ok(Imported { header, packing, step: state.step, run_state: Vec::new(), source, rounding, notes })
 }
 
-/// The listed contacts in the convention of grainlab.
 fn listed_contacts(
     packing: &Packing,
     index: &BTreeMap<u32, usize>,
@@ -259,7 +256,6 @@ fn listed_contacts(
     listed.iter().zip(&pairs).map(|(c, pair)| listed_contact(packing, pair, c, rounding)).collect()
 }
 
-/// The two grains of a listed contact.
 struct Pair {
     /// Indices of the grains, the smaller one first.
     grains: [usize; 2],

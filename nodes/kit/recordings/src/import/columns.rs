@@ -22,9 +22,7 @@ pub(super) struct Names {
     pub(super) spin: [&'static str; 3],
 }
 
-/// Places of the columns of a grain.
 pub(super) struct Columns {
-    /// Number of all columns.
     count: usize,
     first_id: u32,
     id: Option<usize>,
@@ -35,7 +33,6 @@ pub(super) struct Columns {
     motion: [Option<[usize; 3]>; 2],
 }
 
-/// Places of three columns, if all of them are there.
 pub(super) fn three(names: &[&str], wanted: [&str; 3]) -> Option<[usize; 3]> {
     let [x, y, z] = wanted.map(|wanted| names.iter().position(|name| *name == wanted));
     Some([x?, y?, z?])
@@ -70,7 +67,6 @@ impl Columns {
         Err(line.error(format!("{} columns, {} were announced", words.len(), self.count)))
     }
 
-    /// Adds the grain of a row with these words, at this position.
     pub(super) fn grain(
         &self,
         line: &Line<'_>,

@@ -5,7 +5,6 @@ use grainlab_core::{Contact, OTHER_LAW, Packing, Vec3};
 use super::error::ImportError;
 use super::rounding::{ALL_DIGITS, Rounding};
 
-/// A contact as a file lists it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ListedContact {
     pub(super) line: usize,
@@ -50,11 +49,8 @@ const UNITS: [(&str, f64); 3] = [("mm", 1e-3), ("cm", 1e-2), ("um", 1e-6)];
 /// Relative difference of sums of forces that are of one unit.
 const SAME_UNIT: f64 = 0.1;
 
-/// Returns the contacts sorted, each once, and a note on contacts that are listed from both grains. `contacts` has the contacts of
-/// `listed`, in its order.
-///
-/// # Errors
-/// If a contact is listed twice, unless from both grains and with equal and opposite forces.
+/// Sorts the contacts of `listed`, which `contacts` has in its order, and notes those listed from both grains.
+/// A contact that is listed twice is an error, unless from both grains and with equal and opposite forces.
 pub(super) fn once(
     listed: &[ListedContact],
     contacts: Vec<Contact>,
@@ -125,10 +121,8 @@ fn repeated(row: &ListedContact, first: &ListedContact, is_reversed: bool) -> Im
     )
 }
 
-/// Leaves out contacts whose grains do not overlap by position because of rounding, if they carry next to nothing, and notes it.
-///
-/// # Errors
-/// If such a contact carries more, or its grains are farther apart than rounding explains.
+/// Leaves out contacts that do not overlap because of rounding, and notes it.
+/// One that carries more than next to nothing, or is farther apart than rounding explains, is an error.
 pub(super) fn leave_out_apart(
     packing: &mut Packing,
     rounding: Option<Rounding>,
@@ -182,10 +176,7 @@ fn unit_of_lengths(packing: &Packing, ratio: f64) -> Option<&'static str> {
     UNITS.iter().find(fits).map(|(unit, _)| *unit)
 }
 
-/// Checks the normal forces against the contact law.
-///
-/// # Errors
-/// If no contact carries a force, if all forces have the wrong sign, or if the law is only assumed and cannot give the forces.
+/// Fails if no contact carries a force, all forces have the wrong sign, or the law is only assumed and cannot give them.
 pub(super) fn check_forces(packing: &Packing, law_is_stated: bool) -> Result<(), ImportError> {
     let is_zero = |c: &Contact| c.normal_force == 0.0 && c.tangential_force.norm() == 0.0;
     if !packing.contacts.is_empty() && packing.contacts.iter().all(is_zero) {

@@ -60,7 +60,6 @@ impl ImportError {
         move |source| Self::In { path, source: Box::new(Self::Invalid(source.to_string())) }
     }
 
-    /// The file contains no packing.
     pub(super) fn empty() -> Self {
         Self::Invalid("it contains no packing".to_owned())
     }
@@ -78,17 +77,14 @@ impl ImportError {
         Self::Invalid(format!("line {line}: {problem}"))
     }
 
-    /// A feature in a line that is not supported, and why.
     pub(super) fn unsupported(line: usize, what: impl Display, reason: &str) -> Self {
         Self::line(line, format_args!("{what} is not supported: {reason}"))
     }
 
-    /// A grain that occurs twice, in two lines.
     pub(super) fn twice(id: u32, line: usize, before: usize) -> Self {
         Self::line(line, format_args!("grain {id} occurs twice, before in line {before}"))
     }
 
-    /// No contact carries a force.
     pub(super) fn no_forces(overlapping: usize) -> Self {
         Self::Invalid(format!(
             "no contact carries a force, although {overlapping} pairs of grains overlap: the forces were written before they were \
@@ -97,12 +93,10 @@ impl ImportError {
         ))
     }
 
-    /// Another number of grains or contacts than is stated.
     pub(super) fn count(what: &str, stated: usize, found: usize) -> Self {
         Self::Invalid(format!("it has {found} {what}, and states {stated}: it is cut, or of another state"))
     }
 
-    /// A contact with a grain that does not exist.
     pub(super) fn unknown_id(line: usize, id: u32) -> Self {
         Self::line(line, format_args!("a contact names grain {id}, which does not exist"))
     }

@@ -19,7 +19,6 @@ use super::settings::{ImportOptions, Known};
 use super::stated;
 use super::text::{Line, lines, shown};
 
-/// True for a comment of extended XYZ.
 pub(super) fn is_comment(line: &str) -> bool {
     line.contains("Properties=") || line.contains("Lattice=")
 }
@@ -57,7 +56,6 @@ pub fn each(
     if any { Ok(()) } else { Err(ImportError::empty()) }
 }
 
-/// Most fields of a row.
 const MOST_FIELDS: usize = 1000;
 
 const NAMES: Names = Names {

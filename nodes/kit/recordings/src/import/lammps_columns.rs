@@ -23,7 +23,6 @@ pub(super) struct ForceRow<'a> {
     pub(super) text: &'a str,
 }
 
-/// The directions from one grain to the other.
 struct Directions<'g> {
     grains: &'g GrainTable,
     cell: &'g Cell,

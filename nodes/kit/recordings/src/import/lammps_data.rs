@@ -92,7 +92,6 @@ enum Section {
 }
 
 impl Section {
-    /// The section that a line opens, if the line is the name of a section of LAMMPS.
     fn named(line: &Line<'_>, words: &[&str], style: &str) -> Result<Option<Self>, ImportError> {
         match *words {
             ["Atoms"] if matches!(style, "" | "sphere") => Ok(Some(Self::Atoms)),
@@ -125,7 +124,6 @@ struct DataFile {
     motion: BTreeMap<u32, (usize, Vec3, Vec3)>,
     /// True if there is a section of velocities.
     states_motion: bool,
-    /// Notes on sections that are not read.
     unread: Vec<String>,
 }
 
@@ -293,7 +291,6 @@ impl DataFile {
     }
 }
 
-/// The error of a line that LAMMPS does not know.
 fn unknown(line: &Line<'_>, words: &[&str]) -> ImportError {
     line.error(format!(
         "{} is neither a line of the header, such as `500 atoms`, `0 0.01 xlo xhi` or `0 0 0 xy xz yz`, nor a section, such as \

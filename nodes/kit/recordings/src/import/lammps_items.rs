@@ -9,7 +9,6 @@ use super::stated;
 use super::text::{Line, lines, shown};
 
 pub(super) struct Frame<'a> {
-    /// Number of the step, if the dump has it.
     pub(super) step: Option<u64>,
     /// s; 0 if the dump has none.
     pub(super) time: f64,

@@ -33,15 +33,12 @@ const BY_NAME: [&str; 8] = ["patom1", "patom2", "fx", "fy", "fz", "p1", "p2", "p
 /// Columns that are required for forces.
 const LEAST: usize = 5;
 
-/// Tangential forces up to this fraction of the force are rounding of its direction: 17 digits leave less, 6
-/// more.
+/// Tangential forces up to this fraction are rounding of the force's direction: 17 digits leave less, 6 more.
 const CENTRAL: f64 = 1e-9;
 
-/// The content of a dump.
 struct Local<'a> {
     /// Pairs that carry force.
     contacts: Vec<ListedContact>,
-    /// True if the columns include tangential forces.
     tangential: bool,
     /// Names of all columns, places of those that are read, and the rows of the contacts.
     names: Vec<&'a str>,
@@ -163,7 +160,6 @@ const NEEDED: &str = "columns c_pl[1] c_pl[2] c_pf[2] c_pf[3] c_pf[4] c_pf[5] c_
     compute pl all property/local patom1 patom2 and compute pf all pair/local dist fx fy fz p1 p2 p3; name others with \
     --contact-columns";
 
-/// Refuses a wanted column that occurs twice.
 fn once(names: &[&str], wanted: &[&str]) -> Result<(), String> {
     let twice = wanted.iter().find(|wanted| names.iter().filter(|name| name == wanted).count() > 1);
     twice.map_or(Ok(()), |name| Err(format!("the column {name} occurs twice")))

@@ -150,8 +150,7 @@ const FROM_YADE: &str =
 
 const UNKNOWN: &str = "has an unknown format: neither CSV (p,id,x,y,z,...), nor a LAMMPS dump (ITEM: ...) or data file (LAMMPS ..., or N atoms), nor extended XYZ (N, then Properties=...), nor a YADE export (#format ...), each also as .gz, nor a recording (.mcap or its directory)";
 
-/// Number of first lines that must contain the number of atoms of a LAMMPS data file; its first line is
-/// arbitrary.
+/// First lines that must contain the number of atoms of a LAMMPS data file; the very first is arbitrary.
 const HEADER: usize = 20;
 
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";

@@ -63,7 +63,6 @@ pub fn each(
     if any { Ok(()) } else { Err(ImportError::empty()) }
 }
 
-/// The sign in the packings of a topic that they are of several runs.
 fn several_runs(recording: &Recording, topic: &str) -> Result<Option<RunSign>, Failure> {
     let mut run = OneRun::default();
     let sign = |message: Message| run.packing(topic, &packing(&message).ok()?.packing).err();

@@ -108,7 +108,6 @@ impl fmt::Display for Blurred {
     }
 }
 
-/// How to write positions with all their digits.
 pub(super) const ALL_DIGITS: &str = "write them with 17 digits (LAMMPS: dump_modify ID format float %.17g)";
 
 #[cfg(test)]

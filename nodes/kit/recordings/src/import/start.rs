@@ -113,7 +113,6 @@ pub fn start(draft: &Draft, file: &grainlab_scene::Start) -> Result<Start, Failu
 /// Memory that it takes to make and check the copies of a packing, over the memory of these.
 const COPYING: f64 = 2.0;
 
-/// The copies of a packing to start from, if they can be made.
 fn copies(packing: Packing, file: &grainlab_scene::Start) -> Result<Packing, Failure> {
     let grains = file.grains_of_copies(packing.grains()).map_err(Failure::usage)?;
     if file.copies == 1 {
@@ -125,7 +124,6 @@ fn copies(packing: Packing, file: &grainlab_scene::Start) -> Result<Packing, Fai
     copied.ok_or_else(|| Failure::usage("start.copies: the cell of the copies is invalid"))
 }
 
-/// The whole path of a file named under a key of `[start]`.
 fn whole(draft: &Draft, key: &'static str, file: &str) -> Result<PathBuf, Failure> {
     let folder = draft.source_of(key).map(Path::new).and_then(Path::parent).unwrap_or(Path::new(""));
     let path = folder.join(file);
@@ -133,7 +131,6 @@ fn whole(draft: &Draft, key: &'static str, file: &str) -> Result<PathBuf, Failur
     path.canonicalize().map_err(failed)
 }
 
-/// Packings of a step in a file.
 enum Picked {
     None,
     One(Box<Imported>),
@@ -180,7 +177,6 @@ fn missing(error: &ImportError) -> Option<&[Setting]> {
     }
 }
 
-/// The values of the scene for data that the file lacks.
 fn of_scene(draft: &Draft, missing: &[Setting], forces: ImportOptions) -> ImportOptions {
     let given = |setting, value: Option<f64>| value.filter(|_| missing.contains(&setting));
     ImportOptions {

@@ -39,7 +39,6 @@ pub(super) fn periodic(line: usize, text: &str) -> Result<(), ImportError> {
     Err(ImportError::unsupported(line, format!("pbc {}", cut(text)), reason))
 }
 
-/// The radius of a grain, stated as radius, as diameter, or as both.
 pub(super) fn radius(
     line: &Line<'_>,
     radius: Option<f64>,

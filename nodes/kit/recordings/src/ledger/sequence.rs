@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-/// Maximum number of ranges kept per writer. Nearly all numbers arrive in order: thousands of gaps mean a faulty or
-/// hostile writer, which must not exhaust the memory.
+/// Most ranges kept per writer: thousands of gaps mean a faulty or hostile writer, which must not exhaust the memory.
 const MOST_GAPS: usize = 4096;
 
 /// The received numbers of 1, 2, 3 …, kept as the missing ranges. If there are too many of these, the lowest

@@ -90,5 +90,4 @@ fn is_zero(count: &u64) -> bool {
     *count == 0
 }
 
-/// Maximum number of ranges in a [`WriterTally`].
 pub(super) const LISTED_GAPS: usize = 32;

@@ -9,7 +9,6 @@ const KEEP_ALL: u32 = 10_000;
 /// Seconds from which a duration counts as infinite: those of DDS are 2³¹ − 1, those of ROS 2 more.
 const INFINITE: u64 = i32::MAX as u64;
 
-/// The policies that a profile names.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Policies {
     reliable: Option<bool>,
@@ -27,7 +26,6 @@ const DURABILITY: Values = &[(1, "transient_local", true), (2, "volatile", false
 const HISTORY: Values = &[(1, "keep_last", false), (2, "keep_all", true)];
 const LIVELINESS: Values = &[(1, "automatic", true)];
 
-/// The policies that a profile may have.
 const KEYS: [&str; 9] = [
     "history",
     "depth",
@@ -86,7 +84,6 @@ impl Policies {
         }
     }
 
-    /// `qos` with these policies.
     pub(super) fn over(&self, qos: Qos) -> Qos {
         Qos {
             reliable: self.reliable.unwrap_or(qos.reliable),

@@ -21,13 +21,11 @@ pub(super) struct Block {
 }
 
 impl Block {
-    /// A block of these records without messages.
     pub(super) fn empty(records: &RawRecord<'_>, is_chunk: bool) -> Self {
         let (offset, end_offset, channels) = (records.offset, records.end(), Some(BTreeSet::new()));
         Self { offset, end_offset, start: u64::MAX, end: 0, channels, is_chunk }
     }
 
-    /// Adds a message.
     pub(super) fn include(&mut self, header: &MessageHeader) {
         (self.start, self.end) = (self.start.min(header.log_time), self.end.max(header.log_time));
         self.channels.get_or_insert_default().insert(header.channel_id);

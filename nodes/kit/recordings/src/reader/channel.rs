@@ -106,7 +106,6 @@ impl ChannelInfo {
         depths.max().unwrap_or(1).clamp(1, 1000)
     }
 
-    /// The values of a key in the profiles of all publishers.
     fn qos_values<'a>(&'a self, key: &'a str) -> impl Iterator<Item = &'a str> {
         self.qos.lines().filter_map(move |line| {
             let (found, value) = line.trim_start_matches(['-', ' ']).split_once(':')?;

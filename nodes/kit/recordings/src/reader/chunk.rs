@@ -19,8 +19,7 @@ const ONCE: u64 = 4 << 20;
 /// Logarithm of the largest window of zstd for which memory is allocated: [`ANY_RATIO`].
 const WINDOW: u32 = ANY_RATIO.ilog2();
 
-/// Returns the largest size that `compressed` bytes may decompress to. A few bytes can decompress to any size, and the content of
-/// a chunk is in memory as a whole.
+/// Largest size that `compressed` bytes may decompress to: a few could give any size, and a chunk is in memory as a whole.
 fn limit(compressed: usize) -> u64 {
     (compressed as u64).saturating_mul(RATIO).max(ANY_RATIO)
 }

@@ -26,10 +26,7 @@ pub(super) struct Indexed {
 }
 
 impl Indexed {
-    /// Adds a record at byte `at`.
-    ///
-    /// # Errors
-    /// Returns a contradiction to the records that were added before.
+    /// Adds a record at byte `at`; an error is a contradiction to the records that were added before.
     pub(super) fn add(&mut self, at: usize, opcode: u8) -> Result<(), String> {
         match self.types.insert(at, opcode) {
             Some(other) if other == op::CHUNK || other != opcode => {
@@ -39,7 +36,6 @@ impl Indexed {
         }
     }
 
-    /// Adds the lists of messages behind a chunk.
     pub(super) fn add_lists(&mut self, range: Range<usize>) {
         self.lists.insert(range.start, range.end);
     }
@@ -50,12 +46,10 @@ impl Indexed {
         self.lists.retain(|from, to| *from < *to && *to <= end && chunks.range(*from..*to).next().is_none());
     }
 
-    /// Adds the header, with which every file begins.
     pub(super) fn add_header(&mut self) {
         self.types.insert(MAGIC.len(), op::HEADER);
     }
 
-    /// Returns the type of the record that begins at byte `at` by the index, if the index states the type.
     fn stated(&self, at: usize) -> Option<u8> {
         let is_list = || self.lists.range(..=at).next_back().is_some_and(|(_, end)| at < *end);
         self.types.get(&at).copied().or_else(|| is_list().then_some(op::MESSAGE_INDEX))
@@ -76,13 +70,11 @@ pub(super) struct DamagedRun {
     /// First byte after the last record of this type.
     end: usize,
     opcode: u8,
-    /// Number of records with the fault.
     records: u64,
     fault: String,
 }
 
 impl DamagedRun {
-    /// Describes the fault of the first record, and the other records of the run.
     pub(super) fn detail(self) -> String {
         match self.records - 1 {
             0 => self.fault,
@@ -96,7 +88,6 @@ impl DamagedRun {
     }
 }
 
-/// Content of the data section.
 #[derive(Default)]
 pub(super) struct Data {
     pub(super) chunks: Chunks,
@@ -113,7 +104,6 @@ pub(super) struct Data {
     pub(super) counts: BTreeMap<u16, u64>,
     /// True if messages are listed behind chunks.
     pub(super) listed: bool,
-    /// A contradiction in it.
     pub(super) wrong: Option<String>,
     /// Byte of the first record after the end record.
     pub(super) after_end: Option<usize>,
@@ -211,7 +201,6 @@ impl Data {
         }
     }
 
-    /// The first contradiction between the data section, the chunks of an index, and its counts.
     pub(super) fn contradiction(&self, indexed: &Chunks, counted: &Statistics) -> Option<String> {
         // A damaged record may have stated messages.
         let differs = |stated: u64, found: u64| stated < found || stated > found && self.damaged.is_empty();
@@ -255,8 +244,7 @@ impl Data {
         })
     }
 
-    /// Counts the entries of a message index: 16 bytes each, log time first. The first and the last are compared with the times
-    /// of their chunk.
+    /// Counts the entries of a message index, 16 bytes with log time first; compares the first and the last with their chunk.
     fn list(&mut self, body: &[u8], offset: usize, (chunk, start, end): (usize, u64, u64)) {
         let Some((channel, entries)) = body.split_first_chunk::<2>() else { return };
         let entries = entries.get(4..).unwrap_or_default().as_chunks::<16>().0;

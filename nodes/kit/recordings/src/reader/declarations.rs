@@ -19,10 +19,8 @@ pub(super) struct Declarations {
 }
 
 impl Declarations {
-    /// Adds a schema or a channel whose id is new; ignores other records, and a schema with id 0, as MCAP demands of readers.
-    ///
-    /// # Errors
-    /// Returns the difference from the record that has the same id.
+    /// Adds a schema or a channel whose id is new; an error is its difference from the record that has the same id.
+    /// Ignores other records, and a schema with id 0, as MCAP demands of readers.
     pub(super) fn add(&mut self, record: Record<'_>) -> Result<(), String> {
         if let Some(difference) = self.difference(&record) {
             return Err(difference);

@@ -29,9 +29,7 @@ pub(super) fn summary(bytes: &[u8]) -> usize {
     }
 }
 
-/// Returns the number of bytes of the recording at the beginning of `bytes`, if others follow its end.
-///
-/// Frames of records alone are read.
+/// Returns the length of the recording at the beginning of `bytes` by its frames alone, if other bytes follow its end.
 pub(super) fn length_of_first(bytes: &[u8]) -> Option<usize> {
     let mut ended = false;
     let footer = Records::new(bytes, MAGIC.len()).map_while(Result::ok).find(|record| {

@@ -18,7 +18,6 @@ pub(super) fn not_mcap(path: &Path, bytes: &[u8]) -> Failure {
     Failure::failed(format!("{} is not an MCAP file: {why}", path.display()))
 }
 
-/// A directory without a recording.
 pub(super) fn empty(path: &Path) -> Failure {
     let advice = "give a run directory or an MCAP file";
     Failure::failed(format!("{} contains no .mcap file: {advice}", path.display()))
@@ -42,7 +41,6 @@ pub struct Warning {
 }
 
 impl Warning {
-    /// A warning of a whole file.
     pub(super) fn of_file(path: PathBuf, kind: WarningKind, detail: impl Into<String>) -> Self {
         Self { path, offset: 0, kind, detail: detail.into() }
     }

@@ -21,7 +21,6 @@ use super::held::Content;
 use super::index::Index;
 use super::records::Records;
 
-/// Name, time range and number of messages of one MCAP file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct FileCount {
     pub(crate) name: String,
@@ -78,12 +77,10 @@ impl OpenFile {
         &self.bytes[..self.index.length]
     }
 
-    /// Size of the file, bytes.
     pub(super) fn size(&self) -> u64 {
         self.bytes.len() as u64
     }
 
-    /// A part of the file that messages share.
     pub(super) fn part(&self, range: Range<usize>) -> Content {
         Content::Part { file: Arc::clone(&self.bytes), range }
     }

@@ -72,10 +72,7 @@ pub(super) struct FileEntry {
 }
 
 impl BagInformation {
-    /// The `metadata.yaml` in a directory, if there is one.
-    ///
-    /// # Errors
-    /// If it cannot be read.
+    /// Reads the `metadata.yaml` of a directory; `None` if there is none.
     pub(crate) fn of(directory: &Path) -> Result<Option<Self>, String> {
         let path = directory.join("metadata.yaml");
         if !path.exists() {
@@ -86,10 +83,7 @@ impl BagInformation {
         read.map(|b| Some(b.rosbag2_bagfile_information))
     }
 
-    /// Returns the `metadata.yaml` of a recording: the one in the directory, or the one next to the file if it names the file.
-    ///
-    /// # Errors
-    /// Returns an error if the one in the directory cannot be read. A file is a recording without another one.
+    /// Reads the `metadata.yaml` of a directory, or a readable one beside a file if it names the file.
     pub(super) fn beside(path: &Path) -> Result<Option<Self>, String> {
         if path.is_dir() {
             return Self::of(path);
@@ -102,13 +96,11 @@ impl BagInformation {
         self.relative_file_paths.iter().any(|name| file.ends_with(name))
     }
 
-    /// The topics with the hashes of their types, where it has them.
     pub(crate) fn type_hashes(&self) -> impl Iterator<Item = (String, String)> {
         let topics = self.topics_with_message_count.iter().flatten().map(|entry| &entry.topic_metadata);
         topics.filter_map(|topic| Some((topic.name.clone(), topic.type_description_hash.clone()?)))
     }
 
-    /// A difference of the number of messages that it states from the number found.
     pub(super) fn differs(&self, found: u64) -> Option<String> {
         let stated = self.message_count.filter(|n| *n != found)?;
         Some(format!("it states {}, the files hold {found}", count(stated, "message")))

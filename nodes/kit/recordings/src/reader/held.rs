@@ -18,7 +18,6 @@ pub(super) struct Held {
     most: u64,
 }
 
-/// Memory of the contents of one reader.
 #[derive(Default)]
 pub(super) struct Memory {
     in_use: AtomicU64,
@@ -30,7 +29,6 @@ pub(super) struct Memory {
 const SPARE: usize = 2;
 const LARGEST_SPARE: usize = 8 << 20;
 
-/// Content of a chunk, shared by several messages.
 pub(super) enum Content {
     /// Content that was decompressed.
     Own { bytes: Vec<u8>, memory: Arc<Memory> },
@@ -44,7 +42,6 @@ impl Held {
         Self::up_to(size.saturating_mul(RATIO).max(LEAST))
     }
 
-    /// With this limit, bytes.
     pub(super) fn up_to(most: u64) -> Self {
         Self { memory: Arc::default(), most }
     }

@@ -69,10 +69,7 @@ impl Index {
         index
     }
 
-    /// The index in the file, if there is one: all parts of a summary section are optional.
-    ///
-    /// # Errors
-    /// Contradictions of the index to the records.
+    /// The index in the file, `None` without one: all parts of a summary are optional. Contradictions to the records are errors.
     fn from_summary(
         path: &Path,
         bytes: &[u8],
@@ -177,7 +174,6 @@ impl Index {
         Ok(is_complete.then_some(index))
     }
 
-    /// Adds a chunk of the summary.
     fn chunk(
         &mut self,
         bytes: &[u8],

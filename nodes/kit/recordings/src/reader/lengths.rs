@@ -5,9 +5,7 @@ use std::collections::BTreeMap;
 
 use mcap::records::op;
 
-/// A part of a record.
 enum Part {
-    /// A fixed number of bytes.
     Fixed(usize),
     /// A length of four bytes and that many bytes.
     Short,
@@ -47,9 +45,8 @@ pub(super) fn fit(opcode: u8, body: &[u8]) -> bool {
     layout(opcode).iter().all(|part| take(&mut rest, part).is_some())
 }
 
-/// Returns the first key that the map of texts of a record has twice, and the record with the last value of each key.
-///
-/// MCAP leaves open which value counts. The last one counts here, as in the readers for Python and Go.
+/// Returns the first key that a map of texts has twice, and the record with the last value of each key.
+/// MCAP leaves open which value counts: the last one does here, as in the readers for Python and Go.
 pub(super) fn repeated_key(opcode: u8, body: &[u8]) -> Option<(&[u8], Vec<u8>)> {
     let (mut rest, layout) = (body, layout(opcode));
     let map = layout.iter().position(|part| matches!(part, Texts))?;

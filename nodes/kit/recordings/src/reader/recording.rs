@@ -92,7 +92,6 @@ impl Recording {
         Ok(Self { path, files, bag, compressed, topics, unknown, warnings })
     }
 
-    /// Size of all files, bytes.
     pub(super) fn size(&self) -> u64 {
         self.files.iter().map(OpenFile::size).sum()
     }
@@ -126,8 +125,7 @@ impl Recording {
         self.unknown.lock().unwrap_or_else(PoisonError::into_inner).insert(opcode);
     }
 
-    /// Returns the types of records that MCAP does not define, found in what was read so far: private ones (from 0x80), and those
-    /// of a later version.
+    /// Types of the records read so far that MCAP does not define: private ones (from 0x80), and those of a later version.
     pub(crate) fn unknown_records(&self) -> BTreeSet<u8> {
         self.unknown.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
@@ -297,7 +295,6 @@ impl Recording {
         files.map(|f| f.path.clone()).collect()
     }
 
-    /// The session of a file's recorder and its ledger so far.
     fn account(&self, file: &OpenFile) -> Option<(String, Vec<TopicTally>)> {
         let metadata = file.metadata(METADATA_RECORD, |w| self.warn(w))?;
         let tallies = serde_json::from_str(metadata.get(LEDGER_KEY)?).ok()?;
@@ -310,7 +307,6 @@ impl Recording {
         self.files.iter().map(OpenFile::count).collect()
     }
 
-    /// Returns the number of messages on each topic.
     pub(crate) fn counts(&self) -> BTreeMap<&str, u64> {
         let mut counts = BTreeMap::new();
         for index in self.files.iter().map(|f| &f.index) {

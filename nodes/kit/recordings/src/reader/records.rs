@@ -5,7 +5,6 @@ use std::ops::Range;
 
 use super::lengths;
 
-/// A record in the file or in a chunk.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RawRecord<'a> {
     pub(crate) opcode: u8,
@@ -53,9 +52,6 @@ impl<'a> RawRecord<'a> {
     }
 
     /// Checks the lengths in the record, which is enough for a record whose content is not needed.
-    ///
-    /// # Errors
-    /// Returns the fault if they exceed the record.
     pub(super) fn fit(&self) -> Result<(), String> {
         let fault = || format!("the lengths in it do not fit a record of type 0x{:02x}", self.opcode);
         lengths::fit(self.opcode, self.body).then_some(()).ok_or_else(fault)
@@ -106,7 +102,6 @@ impl<'a> Records<'a> {
         Self { bytes, position }
     }
 
-    /// The record at `offset`, if it is complete.
     pub(super) fn at(bytes: &'a [u8], offset: u64) -> Option<RawRecord<'a>> {
         let offset = usize::try_from(offset).ok()?;
         Records::new(bytes, offset).next()?.ok()

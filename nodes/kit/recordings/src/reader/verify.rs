@@ -74,7 +74,6 @@ impl Recording {
         all.filter(|(_, c)| c.schema_encoding == "ros2msg")
     }
 
-    /// The definitions that cannot be parsed, with the file of each.
     fn definition_faults(&self) -> Vec<(PathBuf, String)> {
         let fault = |(file, c): (&OpenFile, &Arc<ChannelInfo>)| {
             let why = Schema::parse(&c.ros_type, &c.definition).err()?;
@@ -161,7 +160,6 @@ impl Recording {
     }
 }
 
-/// Counts of all files.
 #[derive(Default)]
 pub(super) struct Contents {
     records: u64,
@@ -300,8 +298,7 @@ impl Contents {
     }
 }
 
-/// Order of declarations and messages, as a program sees it that reads a file from the start: MCAP demands that a schema comes
-/// before its channels, and a channel before its messages.
+/// Order of declarations and messages: MCAP demands a schema before its channels, and a channel before its messages.
 #[derive(Default)]
 struct Order {
     declared: Declarations,
@@ -360,7 +357,6 @@ impl Listed {
         self.0.extend(record.message().map(key));
     }
 
-    /// The difference between the messages and the times in the header of their chunk.
     fn outside(&self, chunk: &RawRecord<'_>) -> Option<String> {
         let Ok(Record::Chunk { header, .. }) = chunk.parse() else { return None };
         let times = || self.0.iter().map(|(_, time, _)| *time);

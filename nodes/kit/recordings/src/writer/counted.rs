@@ -4,7 +4,6 @@ use std::io::{self, Seek, SeekFrom, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A writer, and the number of bytes written to it so far.
 pub(super) struct Counted<W> {
     inner: W,
     count: Arc<AtomicU64>,
@@ -15,7 +14,6 @@ impl<W> Counted<W> {
         Self { inner, count: Arc::default() }
     }
 
-    /// The count, which stays current.
     pub(super) fn count(&self) -> Arc<AtomicU64> {
         Arc::clone(&self.count)
     }

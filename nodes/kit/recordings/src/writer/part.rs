@@ -38,7 +38,6 @@ pub(super) struct Part {
     began: Instant,
 }
 
-/// A file that is complete.
 pub(super) struct Closed {
     pub(super) path: PathBuf,
     pub(super) bytes: u64,
@@ -92,10 +91,7 @@ impl Part {
         })
     }
 
-    /// Reserves the space for `bytes` more, for the open chunk, and for the end of the file.
-    ///
-    /// # Errors
-    /// Returns an error if the disk is full. The file can still be completed.
+    /// Reserves space for `bytes`, the open chunk and the end of the file, which can still be completed after an error.
     pub(super) fn reserve(&mut self, bytes: usize) -> Result<(), McapError> {
         let size = self.bytes().saturating_add(self.chunk_bytes).saturating_add(bytes as u64);
         self.reserve.ensure(size).map_err(McapError::Io)
@@ -126,7 +122,6 @@ impl Part {
         Ok(())
     }
 
-    /// Writes a message on a declared topic.
     pub(super) fn write(
         &mut self,
         topic: &str,
@@ -175,8 +170,7 @@ impl Part {
     }
 }
 
-/// The options of all files. A chunk is written whole with its final header (`disable_seeking`), so a crash
-/// leaves a valid prefix.
+/// Chunks are written whole with their final header (`disable_seeking`), so a crash leaves a valid prefix.
 pub(crate) fn options(remark: &str) -> WriteOptions {
     WriteOptions::new()
         .profile("ros2")

@@ -27,9 +27,6 @@ impl Reserve {
     }
 
     /// Ensures that the file can grow to `size` and be completed then. A file system that reserves nothing gives no error.
-    ///
-    /// # Errors
-    /// Returns an error if the disk is full.
     pub(super) fn ensure(&mut self, size: u64) -> io::Result<()> {
         let needed = size.saturating_add(END);
         if needed <= self.end {
@@ -55,9 +52,6 @@ impl Drop for Reserve {
 }
 
 /// Free bytes for an ordinary user on the file system of `path`.
-///
-/// # Errors
-/// If `path` does not exist or the call fails.
 pub(super) fn free_space(path: &Path) -> io::Result<u64> {
     let answer = rustix::fs::statvfs(path)?;
     Ok(answer.f_bavail.saturating_mul(answer.f_frsize))

@@ -1,9 +1,12 @@
-//! After the loading path: the last messages, and what the end of the process waits for.
+//! After the loading path: the last messages, and the results of the last packing.
 
 use super::DemSimulator;
+use crate::messages::Remark;
 use crate::publication::{HOLD, flush_last_messages};
+use crate::run_end::Verdict;
+use crate::settings::Finish;
+use grainlab_msgs::msg::RunState;
 use grainlab_node_kit::{Bus, Exit, Next, NodeError};
-use std::time::Duration;
 
 impl DemSimulator {
     pub(super) fn wait_after_end(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
@@ -11,26 +14,54 @@ impl DemSimulator {
         if !self.publication.queue().is_empty() {
             return Ok(Next::Wait(HOLD));
         }
-        if self.settings.exit_when_finished && self.may_end(bus.now()) {
+        let finish = self.settings.finish;
+        if finish == Finish::AtOnce {
             flush_last_messages(bus);
             return Ok(Next::Finished(Exit::Done));
+        }
+        if let Some(Verdict { exit, reason }) = self.verdict.as_ref().filter(|_| finish == Finish::Inverted) {
+            flush_last_messages(bus);
+            return match exit {
+                Exit::Done => Ok(Next::Finished(Exit::Done)),
+                exit => Err(NodeError::new(*exit, reason)),
+            };
+        }
+        if self.verdict.is_none() && self.judge(bus) {
+            return Ok(Next::Wait(HOLD));
         }
         Ok(Next::Wait(self.publication.next_beat().saturating_sub(bus.now())))
     }
 
-    /// True if the last packing is inverted, or has been awaited for long enough.
-    fn may_end(&self, now: Duration) -> bool {
+    /// Judges the end of the run by the results of the last packing, and publishes the exit; false while results are awaited.
+    fn judge(&mut self, bus: &mut dyn Bus) -> bool {
         let packings = self.publication.packings();
-        let missing = self.inversions.missing(packings.last_step).filter(|_| packings.count > 0);
-        let waited = now.saturating_sub(self.done.unwrap_or(now));
-        let over = waited >= self.settings.inverted_within;
-        if let Some(topic) = missing.filter(|_| over) {
-            log::warn!(
-                "the last packing was not inverted from its {topic} within {:.0} s of the end of the loading path \
-                 (parameter inverted_within): the simulator ends",
-                waited.as_secs_f64()
-            );
+        let judged = match &mut self.results {
+            Some(results) if packings.count > 0 => results.look(bus, packings.last_step),
+            _ => Ok(Verdict { exit: Exit::Done, reason: String::new() }),
+        };
+        match judged {
+            Err(what) => {
+                self.remark = format!("waiting for {what}").into();
+                false
+            }
+            Ok(verdict) => {
+                if verdict.exit != Exit::Done {
+                    log::error!("{}", verdict.reason);
+                }
+                self.remark = Remark { text: verdict.reason.clone(), exit: Some(verdict.exit) };
+                self.publication.state(self.run.simulation(), RunState::FINISHED, self.remark.clone());
+                self.verdict = Some(verdict);
+                true
+            }
         }
-        missing.is_none() || over
+    }
+
+    /// Returns the exit of a simulator that is asked to end after the loading path.
+    pub(super) fn exit_after_end(&self) -> Exit {
+        match (&self.verdict, self.settings.finish) {
+            (Some(verdict), Finish::Inverted) => verdict.exit,
+            (None, Finish::Inverted) => Exit::Interrupted,
+            _ => Exit::Done,
+        }
     }
 }

@@ -73,7 +73,7 @@ impl DemSimulator {
         };
 
         let Some(request) = self.run.simulation().request() else {
-            (self.stage, self.done) = (Stage::Finished, Some(now));
+            self.stage = Stage::Finished;
             self.publication.finish(bus, self.run.simulation(), self.servo.request(), now)?;
             return self.wait_after_end(bus).map_err(End::Unsaved);
         };

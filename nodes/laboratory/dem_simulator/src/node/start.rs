@@ -81,6 +81,9 @@ impl DemSimulator {
             return Ok(Next::Wait(LOOK_AGAIN));
         }
         self.began = now;
+        if let Some(results) = &mut self.results {
+            results.begin(bus)?;
+        }
         if let Some(packing) = self.resumed.take() {
             self.publication.first_packing(&packing);
         }

@@ -1,10 +1,10 @@
 //! A run from beginning to end.
 
 use grainlab_buskit::{Bench, Kind, Record, exit_of};
-use grainlab_dem_simulator::Settings;
+use grainlab_dem_simulator::{Finish, Settings, parameters};
 use grainlab_msgs::msg::{Estimate, Microstructure, Packing, PackingReport, RunState, StrainRate, Stress};
-use grainlab_msgs::{Topic, stamp, topics};
-use grainlab_node_kit::Exit;
+use grainlab_msgs::{stamp, topics};
+use grainlab_node_kit::{Exit, Names, Parameters, RosArgs};
 use std::time::Duration;
 
 fn pressure(PackingReport { stress, .. }: &PackingReport) -> f64 {
@@ -21,16 +21,19 @@ fn every_packing_is_measured_and_inverted_with_its_stamp_and_step() {
     let packings: Vec<Packing> = record.messages(&topics::PACKING);
     let reports: Vec<PackingReport> = record.messages(&topics::PACKING_REPORT);
     let inferred: Vec<Microstructure> = record.messages(&topics::MICROSTRUCTURE);
-    assert_eq!((packings.len(), reports.len(), inferred.len()), (3, 3, 2));
+    assert_eq!((packings.len(), reports.len(), inferred.len()), (3, 3, 3));
     for (packing, report) in packings.iter().zip(&reports) {
         assert_eq!(packing.header.stamp, stamp(packing.time));
         assert_eq!((&packing.header, packing.step), (&report.header, report.source_step));
     }
     // The first one has no contact network, hence no stiffness.
     assert_eq!(reports.iter().map(|r| r.stiffness.len()).collect::<Vec<_>>(), [0, 1, 1]);
-    for ((packing, report), inferred) in packings.iter().zip(&reports).skip(1).zip(&inferred) {
+    assert!(inferred[0].estimates.is_empty());
+    for (packing, inferred) in packings.iter().zip(&inferred) {
         assert_eq!((&packing.header, packing.step), (&inferred.header, inferred.source_step));
         assert_eq!(inferred.source, "packing_report");
+    }
+    for (report, inferred) in reports.iter().zip(&inferred).skip(1) {
         let models: Vec<&str> = inferred.estimates.iter().map(|e| e.model.as_str()).collect();
         let asked = grainlab_emt_inversion::Settings::default().models;
         // The contacts are those of smooth spheres.
@@ -99,14 +102,12 @@ fn loss_repetition_and_delay_change_no_byte() {
     }
 }
 
-/// The end of a simulator that awaits inversions from these topics for at most a minute, with an inversion or without
-/// one: its exit, the time from the last packing to the end, and the record.
-fn end_of_simulator(until_inverted: &[Topic], with_inversion: bool) -> (Option<Exit>, Duration, Record) {
+/// The end of a simulator with an analyzer, and with an inversion or without one: its exit, the time from the end of the loading path
+/// to its own, and the record.
+fn end_of_simulator(settings: &Settings, with_inversion: bool) -> (Option<Exit>, Duration, Record) {
     let bench = Bench::new(0);
-    let settings =
-        Settings { exit_when_finished: true, until_inverted: until_inverted.to_vec(), ..Settings::default() };
     let mut actors = vec![
-        bench.simulator(&settings, None),
+        bench.simulator(settings, None),
         bench.node(Kind::Recorder),
         bench.node(Kind::Servo),
         bench.node(Kind::Analyzer),
@@ -125,28 +126,62 @@ fn end_of_simulator(until_inverted: &[Topic], with_inversion: bool) -> (Option<E
     (exit, took, bench.record.take())
 }
 
+/// Exit and reason that the last state of the run has.
+fn verdict(record: &Record) -> (Option<Exit>, String) {
+    let last: RunState = record.last(&topics::RUN_STATE).unwrap();
+    (last.exit(), last.message)
+}
+
+const INVERTED: Finish = Finish::Inverted;
+
 #[test]
 fn a_simulator_that_awaits_inversions_ends_when_its_last_packing_is_inverted() {
-    let (exit, _, record) = end_of_simulator(&[topics::PACKING_REPORT], true);
-    assert_eq!(exit, Some(Exit::Done));
+    let (exit, _, record) = end_of_simulator(&Settings { finish: INVERTED, ..Settings::default() }, true);
+    assert_eq!((exit, verdict(&record)), (Some(Exit::Done), (Some(Exit::Done), String::new())));
     assert!(record.complete(), "it ended before the inversion");
 }
 
 #[test]
-fn a_simulator_whose_last_packing_is_never_inverted_ends_after_the_time_that_is_set() {
-    for (awaited, with_inversion) in
-        [(&[topics::PACKING_REPORT][..], false), (&[topics::PACKING_REPORT, topics::WAVE_SPEEDS], true)]
-    {
-        let (exit, took, _) = end_of_simulator(awaited, with_inversion);
-        let limit = Settings::default().inverted_within;
-        assert_eq!(exit, Some(Exit::Done));
-        assert!(took + Duration::from_secs(1) >= limit && took <= limit + Duration::from_secs(2), "{took:?}");
+fn a_simulator_whose_last_packing_is_never_inverted_ends_with_an_error_after_the_time_limit() {
+    let speeds = Settings { finish: INVERTED, awaited: vec![topics::WAVE_SPEEDS], ..Settings::default() };
+    let alone = Settings { awaited: Vec::new(), ..speeds.clone() };
+    for (settings, with_inversion, exit, limit, why) in [
+        (&alone, false, Exit::Failure, 30, "the packing_report of the last packing (step "),
+        (&speeds, true, Exit::DataLoss, 60, "wave_speeds of other packings arrived, or are awaited"),
+    ] {
+        let (found, took, record) = end_of_simulator(settings, with_inversion);
+        let (told, reason) = verdict(&record);
+        assert_eq!((found, told), (Some(exit), Some(exit)));
+        assert!(reason.starts_with(why), "{reason}");
+        let limit = Duration::from_secs(limit);
+        assert!(took + Duration::from_secs(1) >= limit && took <= limit + Duration::from_secs(3), "{took:?}");
     }
 }
 
 #[test]
 fn a_simulator_that_awaits_no_inversion_ends_at_the_end_of_its_path() {
-    let (exit, took, _) = end_of_simulator(&[], false);
-    assert_eq!(exit, Some(Exit::Done));
+    let at_once = Settings { finish: Finish::AtOnce, ..Settings::default() };
+    let (exit, took, record) = end_of_simulator(&at_once, false);
+    assert_eq!((exit, verdict(&record).0), (Some(Exit::Done), None));
     assert!(took < Duration::from_secs(5), "{took:?}");
+}
+
+#[test]
+fn the_earlier_names_of_the_parameters_mean_the_same() {
+    let of = |given: &[&str]| {
+        let words = ["--ros-args"].into_iter().chain(given.iter().flat_map(|value| ["-p", value]));
+        let (ros, _) = RosArgs::parse(&words.map(str::to_owned).collect::<Vec<_>>()).unwrap();
+        let names = Names::new("dem_simulator").unwrap();
+        Settings::from(&Parameters::resolve(&parameters(), "dem_simulator", &names, &ros).unwrap())
+    };
+    for (earlier, now) in [
+        (&["exit_when_finished:=true"][..], &["finish:=at_once"][..]),
+        (&["exit_when_finished:=false"], &["finish:=never"]),
+        (
+            &["exit_when_finished:=true", "until_inverted:=[moduli]"],
+            &["finish:=inverted", "awaited:=[moduli]"],
+        ),
+    ] {
+        assert_eq!(of(earlier), of(now), "{earlier:?}");
+    }
 }

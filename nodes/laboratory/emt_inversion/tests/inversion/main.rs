@@ -82,7 +82,7 @@ fn corrected(moduli: &Moduli, settings: &Settings) -> Estimate {
 
 /// That from a report.
 fn of_packing(report: &PackingReport, settings: &Settings) -> Estimate {
-    of_ratio(microstructure_of_report(&message(report), settings).unwrap().message)
+    of_ratio(microstructure_of_report(&message(report), settings).message)
 }
 
 /// An entry of the covariance, without the part that the model leaves out.

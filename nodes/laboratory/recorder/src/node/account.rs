@@ -8,7 +8,6 @@ use grainlab_node_kit::{Bus, NodeError, Stranger};
 use grainlab_recordings::strangers::{self, StrangerView};
 
 impl Recorder {
-    /// The processes whose messages were left out.
     fn strangers(&self, bus: &dyn Bus) -> Vec<StrangerView> {
         let of_bus = bus.strangers();
         let of_binding = self.binding.iter().flat_map(|b| b.ignored()).map(|(participant, topics)| {

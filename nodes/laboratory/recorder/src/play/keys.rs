@@ -6,7 +6,6 @@ use rustix::termios::{LocalModes, OptionalActions, Termios, tcgetattr, tcgetpgrp
 use std::collections::VecDeque;
 use std::io::{IsTerminal, stdin};
 
-/// Request of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Key {
     /// Pauses or continues.

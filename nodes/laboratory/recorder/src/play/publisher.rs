@@ -31,7 +31,6 @@ impl TopicPublisher {
         Ok(())
     }
 
-    /// The name on the bus.
     pub(super) fn name(&self) -> &str {
         &self.name
     }
@@ -40,7 +39,6 @@ impl TopicPublisher {
         self.sent
     }
 
-    /// Looks at the acknowledgements.
     pub(super) fn look(&mut self, bus: &DdsBus) {
         let seen = Seen {
             sent: self.sent,
@@ -51,7 +49,6 @@ impl TopicPublisher {
         self.watch.look(bus.now(), seen);
     }
 
-    /// The acknowledgements at the last look.
     pub(super) fn watch(&self) -> &Watch {
         &self.watch
     }

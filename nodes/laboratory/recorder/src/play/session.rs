@@ -17,7 +17,6 @@ const LOOK: Duration = Duration::from_millis(50);
 /// Maximum time until a key is noticed.
 const KEYS: Duration = Duration::from_millis(30);
 
-/// A playback on the bus.
 pub(super) struct Session {
     pub(super) bus: DdsBus,
     pub(super) publishers: TopicPublishers,
@@ -28,7 +27,6 @@ pub(super) struct Session {
     unread: u64,
     /// Total delay, because readers were slow.
     late: Duration,
-    /// Time of the next look at the acknowledgements.
     next_look: Duration,
 }
 
@@ -40,7 +38,6 @@ struct ClockPublisher {
 }
 
 impl ClockPublisher {
-    /// Advertises `/clock`, to be published `hz` times per second.
     fn advertise(bus: &mut DdsBus, hz: f64) -> Result<Self, Failure> {
         let publisher = bus.advertise(&topics::CLOCK).map_err(Failure::failed)?;
         Ok(Self { publisher, period: Duration::from_secs_f64(1.0 / hz), next: bus.now() })
@@ -65,7 +62,6 @@ impl ClockPublisher {
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Ended {
-    /// Every message was sent.
     Done,
     Signal,
     Key,
@@ -110,7 +106,6 @@ impl Session {
         }
     }
 
-    /// Says how late the messages were in total.
     pub(super) fn say_delay(&self) {
         if self.late > Duration::from_millis(100) {
             let late = self.late.as_secs_f64();

@@ -13,11 +13,9 @@ const REMOVAL: Duration = Duration::from_millis(200);
 /// The state of one topic on the bus at one time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
-    /// Number of messages sent.
     pub(super) sent: u64,
     /// Number of messages that some subscriber has not acknowledged.
     pub(super) pending: u64,
-    /// Number of subscribers.
     pub(super) readers: usize,
     /// True if every reliable subscriber has answered the publisher at least once.
     pub(super) is_answered: bool,
@@ -34,7 +32,6 @@ pub(super) struct Watch {
     progress: Duration,
     /// Largest number of subscribers since then.
     readers: usize,
-    /// True if there was a subscriber at any time.
     was_read: bool,
     suspect: Option<Suspect>,
     last_of_removed: Option<u64>,
@@ -50,7 +47,6 @@ struct Suspect {
 }
 
 impl Watch {
-    /// Looks at the topic.
     pub(super) fn look(&mut self, now: Duration, seen: Seen) {
         let Seen { sent, pending, readers, is_answered } = seen;
         let acknowledged = sent.saturating_sub(pending);

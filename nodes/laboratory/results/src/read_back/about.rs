@@ -208,11 +208,14 @@ pub(super) fn enter(
             let message: msg::WaveSpeeds = read(recorded)?;
             let step = message.source_step;
             let about = about(all, step);
+            let reading = WaveSpeedsReading::try_from(&message).map_err(refused(step));
+            // Nothing is inferred from a packing without wave speeds.
+            if reading.as_ref().is_ok_and(WaveSpeedsReading::is_declined) {
+                return Ok(step);
+            }
             let identity = Identity::new(&message.name, message.header.stamp);
             if sent(about, &topics::WAVE_SPEEDS, identity.clone(), by, recorded) {
-                about
-                    .wave_speeds
-                    .push((identity, WaveSpeedsReading::try_from(&message).map_err(refused(step))?));
+                about.wave_speeds.push((identity, reading?));
             }
             Ok(step)
         }
@@ -220,6 +223,10 @@ pub(super) fn enter(
             let message: msg::Microstructure = read(recorded)?;
             let step = message.source_step;
             let results = message.results().map_err(refused(step))?;
+            // The data have nothing to invert.
+            if results.is_empty() {
+                return Ok(step);
+            }
             let by = by.map(str::to_owned);
             let about = about(all, step);
             let identity = Identity::new(&message.name, message.header.stamp);

@@ -58,19 +58,20 @@ impl Made {
         self.answer(microstructure_of_report(&report, &Settings::default()));
     }
 
-    fn answer(&mut self, answer: Option<Answer>) {
-        let message = answer.map(|answer| to_cdr(&answer.message));
-        message.iter().for_each(|message| self.write("/microstructure", message));
+    fn answer(&mut self, answer: Answer) {
+        self.write("/microstructure", &to_cdr(&answer.message));
     }
 
     fn moduli(&mut self, moduli: &msg::Moduli) {
         self.write("/moduli", &to_cdr(moduli));
-        self.answer(Some(microstructure_of_moduli(moduli, &Settings::default())));
+        self.answer(microstructure_of_moduli(moduli, &Settings::default()));
     }
 
     fn speeds(&mut self, speeds: &msg::WaveSpeeds, answered: bool) {
         self.write("/wave_speeds", &to_cdr(speeds));
-        self.answer(answered.then(|| microstructure_of_speeds(speeds, &Settings::default())));
+        if answered {
+            self.answer(microstructure_of_speeds(speeds, &Settings::default()));
+        }
     }
 
     fn path(&self) -> PathBuf {
@@ -250,7 +251,7 @@ fn estimates_are_listed_by_their_data_whichever_were_inverted_first() {
         made.write("/wave_speeds", &to_cdr(&speeds));
         let mut answers = [
             microstructure_of_report(&report, &Settings::default()),
-            Some(microstructure_of_speeds(&speeds, &Settings::default())),
+            microstructure_of_speeds(&speeds, &Settings::default()),
         ];
         if speeds_first {
             answers.reverse();

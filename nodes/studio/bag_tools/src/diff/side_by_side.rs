@@ -22,9 +22,7 @@ pub(super) struct Compared {
     pub(super) messages: [usize; 2],
     /// `same`, `differ`, `only in A`, `only in B`, `no messages`, or `not compared`.
     pub(super) payload: &'static str,
-    /// True if the times of publishing are the same.
     pub(super) same_times: bool,
-    /// Place and values of the first difference.
     pub(super) first_difference: Option<String>,
 }
 
@@ -36,7 +34,6 @@ pub(super) struct Pair {
     pub(super) channels: [Option<Arc<ChannelInfo>>; 2],
 }
 
-/// The wanted topics of both recordings, by name.
 pub(super) fn pairs(both: &[Recording; 2], wanted: impl Fn(&ChannelInfo) -> bool) -> Vec<Pair> {
     let mut pairs = BTreeMap::<String, Pair>::new();
     for (side, recording) in both.iter().enumerate() {
@@ -60,14 +57,12 @@ impl Pair {
     }
 }
 
-/// A message that waits for its counterpart.
 struct Waiting {
     channel: Arc<ChannelInfo>,
     publish_time: u64,
     payload: Vec<u8>,
 }
 
-/// The comparison of one topic so far.
 struct Progress {
     row: Compared,
     /// Hashes of the messages so far, for topics on which repeats are left out.
@@ -77,10 +72,7 @@ struct Progress {
     ahead: usize,
 }
 
-/// Compares the messages of all topics.
-///
-/// # Errors
-/// Returns an error if a recording lacks a topic that it was said to have.
+/// Errors if a recording lacks a topic that it was said to have.
 pub(super) fn compare(both: &[Recording; 2], pairs: &[Pair]) -> Result<Vec<Compared>, Failure> {
     compare_within(both, pairs, MAX_WAITING_BYTES)
 }

@@ -12,10 +12,8 @@ use std::process::{Command, Output, Stdio};
 use std::slice::Chunks;
 use std::time::{Duration, Instant};
 
-/// Period of the checks of the members.
 const POLL_PERIOD: Duration = Duration::from_millis(500);
 
-/// Number of a task of Slurm, in a shell.
 const SLURM_TASK: &str = "$SLURM_ARRAY_TASK_ID";
 
 const SLURM_ADVICE: &str = "is sbatch on the PATH, and does the controller answer `sinfo`?";
@@ -29,7 +27,6 @@ fn slurm(action: &str, campaign: &Campaign, folder: &Folder) -> Vec<String> {
     ["sh", "-c", include_str!("slurm.sh"), action, &jobs, &job_name(campaign)].map(str::to_owned).into()
 }
 
-/// Answer of the client of Slurm.
 fn ask(action: &str, campaign: &Campaign, folder: &Folder) -> Result<String, Failure> {
     let words = slurm(action, campaign, folder);
     let output = Command::new(&words[0]).args(&words[1..]).stdin(Stdio::null()).output();
@@ -120,7 +117,6 @@ fn job_name(campaign: &Campaign) -> String {
     format!("grainlab-{}", campaign.name)
 }
 
-/// A script for sbatch with all members.
 pub(super) fn script(campaign: &Campaign, folder: &Folder, options: &Options) -> Result<String, Failure> {
     let all: Vec<usize> = (0..campaign.members.len()).collect();
     let (tasks, words) = plan(campaign, folder, options, &all)?;

@@ -9,16 +9,12 @@ const SAVES_WITHIN: Duration = Duration::from_secs(30);
 
 const MIB: u64 = 1 << 20;
 
-/// A limit that a member has reached.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Reached {
-    /// The limit, in words.
     pub(super) reason: String,
-    /// Signal that ends the member.
     pub(super) signal: i32,
 }
 
-/// The limit that the member with this process id, begun at `began`, has reached.
 pub(super) fn reached(options: &Options, pid: u32, began: Instant) -> Option<Reached> {
     let time = options.member_time.map(u64::from).filter(|t| began.elapsed() >= Duration::from_secs(*t));
     if let Some(seconds) = time {

@@ -14,17 +14,14 @@ use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Period of the checks of the processes.
 const POLL_PERIOD: Duration = Duration::from_millis(10);
 
-/// A member to run, and how often it was tried.
 #[derive(Clone, Copy, Debug)]
 struct Task {
     member: usize,
     tries: u16,
 }
 
-/// A running member.
 struct Job {
     task: Task,
     process: Child,
@@ -101,7 +98,6 @@ pub(super) fn run(
     Ok(signals.requested())
 }
 
-/// Starts the run of a member; its output is appended to its log.
 fn start(campaign: &Campaign, folder: &Folder, member: &Member) -> Result<Child, Failure> {
     let words = command(campaign, folder, member)?;
     let path = folder.log(member);

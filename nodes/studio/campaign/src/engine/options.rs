@@ -102,7 +102,6 @@ impl Options {
         Ok(())
     }
 
-    /// The options for sbatch that were given.
     pub(super) fn sbatch(&self) -> Vec<String> {
         let named = [("partition", &self.partition), ("account", &self.account), ("time", &self.time)];
         let named =

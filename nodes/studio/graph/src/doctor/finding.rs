@@ -14,7 +14,6 @@ pub(super) enum Severity {
     Note,
 }
 
-/// Fault, its place, and a remedy.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct Finding {
     pub(super) severity: Severity,

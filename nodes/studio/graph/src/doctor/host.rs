@@ -53,7 +53,6 @@ pub(super) fn environment(get: impl Fn(&str) -> Option<String>) -> Vec<Finding> 
     found
 }
 
-/// Findings about the datagrams of the domain in the network of this host.
 pub(super) fn network(network: Network) -> Vec<Finding> {
     let advice =
         "keep it if that network is trusted, or put WireGuard between the hosts and set GRAINLAB_INTERFACE";

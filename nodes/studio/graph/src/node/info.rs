@@ -64,10 +64,7 @@ pub(super) fn run(node: &str, common: &Common) -> Result<Exit, Failure> {
     common.show(&view, || view.text())
 }
 
-/// The node of this name.
-///
-/// # Errors
-/// With the names of all nodes, if none has it.
+/// Errors with the names of all nodes, if none has this one.
 pub(crate) fn find<'a>(graph: &'a Graph, name: &str) -> Result<&'a NodeEntry, Failure> {
     let name = absolute(name);
     let known = || unknown("node", &name, graph.nodes.iter().map(|n| n.name.as_str()));

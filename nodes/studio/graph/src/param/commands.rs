@@ -17,7 +17,6 @@ use ros2_client::{Message, Parameter, ParameterValue};
 use serde_json::json;
 use std::collections::BTreeMap;
 
-/// A connection to the domain.
 struct Client {
     observer: Observer,
     graph: Graph,
@@ -38,7 +37,6 @@ impl Client {
         Ok((client, name))
     }
 
-    /// Calls a parameter service of a node.
     fn ask<Req: Message + Clone + 'static, Resp: Message + 'static>(
         &mut self,
         service: &str,

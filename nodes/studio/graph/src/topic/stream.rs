@@ -22,7 +22,6 @@ pub(super) struct Stream {
     transport: Moments,
 }
 
-/// Mean, spread and range of a quantity.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct Moments {
     pub(super) count: u64,
@@ -55,10 +54,8 @@ impl Moments {
     }
 }
 
-/// The statistics of one window.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Summary {
-    /// Samples that this process received.
     pub(super) received: u64,
     /// Samples that were published between the first and the last that arrived, and did not arrive here.
     pub(super) missed: u64,
@@ -93,7 +90,6 @@ impl Stream {
         }
     }
 
-    /// The statistics of a window of `seconds`.
     pub(super) fn summary(&self, seconds: f64) -> Summary {
         let received: u64 = self.writers.values().map(|s| s.received).sum();
         let published: u64 = self.writers.values().map(|s| (s.last.0 - s.first.0 + 1).max(0) as u64).sum();

@@ -45,7 +45,6 @@ impl Dataset {
     }
 }
 
-/// A number that is known.
 fn number_of(cell: &Cell) -> Option<f64> {
     match cell {
         Cell::Number(v) => Some(*v).filter(|v| v.is_finite()),

@@ -29,7 +29,6 @@ const LEAST_MARKS: usize = 3;
 /// Approximate number of marks of a linear axis.
 const MARKS: f64 = 6.0;
 
-/// The range of an axis, and its position in the plot.
 pub(super) struct Range {
     low: f64,
     high: f64,
@@ -61,17 +60,14 @@ impl Range {
         Self { low, high, scale, from, to }
     }
 
-    /// The values at its ends.
     pub(super) fn ends(&self) -> [f64; 2] {
         [self.low, self.high]
     }
 
-    /// True for a value on the axis.
     pub(super) fn has(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
     }
 
-    /// The position of a value.
     pub(super) fn at(&self, value: f64) -> f64 {
         let share = match self.scale {
             Scale::Linear => (value - self.low) / (self.high - self.low),

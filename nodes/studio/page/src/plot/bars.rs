@@ -7,13 +7,10 @@ use crate::markup::Html;
 
 const WIDTH: f64 = 340.0;
 
-/// Right end of the axis.
 const RIGHT: f64 = 332.0;
 
-/// Width of a letter of a name.
 const LETTER: f64 = 7.0;
 
-/// Upper end of the axis.
 const TOP: f64 = 34.0;
 
 /// Height of a value.

@@ -9,28 +9,22 @@ use crate::markup::{Html, escaped};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-/// Width and height of the plot.
 const PICTURE: [f64; 2] = [860.0, 560.0];
 
-/// Left, top, right and bottom of the axes.
 const FRAME: Area = [70.0, 60.0, 640.0, 490.0];
 
 /// Half the width of a digit.
 pub(super) const HALF_LETTER: f64 = 3.8;
 
-/// Distance between two lines of a title.
 pub(super) const TITLE_LINE: f64 = 16.0;
 
-/// Mean width of a letter of a title.
 const TITLE_LETTER: f64 = 7.3;
 
-/// Distance between two lines of the legend.
 const LEGEND_LINE: f64 = 20.0;
 
 /// Left end of the legend.
 const LEGEND: f64 = FRAME[2] + 29.0;
 
-/// The style of a point.
 #[derive(Clone, Copy)]
 pub(super) struct Key {
     pub(super) marker: Marker,
@@ -38,7 +32,6 @@ pub(super) struct Key {
     pub(super) hollow: bool,
 }
 
-/// A plot under construction.
 pub(super) struct Drawing {
     text: String,
     width: f64,
@@ -46,7 +39,6 @@ pub(super) struct Drawing {
 }
 
 impl Drawing {
-    /// A file with a title and a subtitle, in the colours of a theme.
     pub(super) fn begin(theme: Theme, title: &str, subtitle: &str) -> Self {
         let sheet = format!("<style>{}</style>\n", style(theme));
         let mut drawing = Self::blank(PICTURE, FRAME, "", &sheet);
@@ -74,23 +66,19 @@ impl Drawing {
         Self { text, width, frame }
     }
 
-    /// The complete SVG.
     pub(super) fn end(mut self) -> String {
         self.text += "</svg>\n";
         self.text
     }
 
-    /// The complete SVG, as an element of a page.
     pub(super) fn element(self) -> Html {
         Html::drawn(self.end())
     }
 
-    /// Left, top, right and bottom of the axes.
     pub(super) fn frame(&self) -> Area {
         self.frame
     }
 
-    /// Adds elements in a group of this class.
     pub(super) fn group(&mut self, class: &str, draw: impl FnOnce(&mut Self)) {
         self.add(format_args!("<g class=\"{class}\">"));
         draw(self);
@@ -132,7 +120,6 @@ impl Drawing {
         });
     }
 
-    /// Both axes with their names and a grid.
     pub(super) fn axes(&mut self, (x, along): (&Range, &str), (y, up): (&Range, &str)) {
         self.marks(x);
         self.other_axes(along, (y, up));
@@ -160,7 +147,6 @@ impl Drawing {
         }
     }
 
-    /// The line of a series through these positions.
     pub(super) fn line(&mut self, series: &Series, places: &[[f64; 2]]) {
         let (Some(line), Some((first, rest))) = (series.line, places.split_first()) else { return };
         let mut path = format!("M {:.1} {:.1}", first[0], first[1]);
@@ -178,7 +164,6 @@ impl Drawing {
         );
     }
 
-    /// A vertical bar between two heights, with caps.
     pub(super) fn error_bar(&mut self, colour: Option<usize>, x: f64, [low, high]: [f64; 2]) {
         let (left, right, class) = (x - 3.0, x + 3.0, class(colour));
         let _ = writeln!(
@@ -188,7 +173,6 @@ impl Drawing {
         );
     }
 
-    /// A point with its tooltip.
     pub(super) fn marker(&mut self, [x, y]: [f64; 2], key: Key, tooltip: &str) {
         let class = format!("{} {}", class(key.colour), if key.hollow { "hollow" } else { "full" });
         let title = if tooltip.is_empty() {

@@ -69,7 +69,6 @@ impl Series {
     /// Number of different colours; higher numbers start over.
     pub const COLOURS: usize = 9;
 
-    /// The line of a legend.
     pub(super) fn entry(&self) -> Entry {
         match (self.marker, self.colour) {
             (None, Some(colour)) => Entry::Colour(colour, self.name.clone()),

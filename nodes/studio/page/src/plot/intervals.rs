@@ -7,10 +7,8 @@ use crate::markup::Html;
 
 const WIDTH: f64 = 300.0;
 
-/// Ends of the axis.
 const SIDES: [f64; 2] = [8.0, WIDTH - 8.0];
 
-/// Upper end of the axis.
 const TOP: f64 = 62.0;
 
 /// A value with its name.

@@ -19,7 +19,6 @@ const BESIDE: [[f64; 2]; 6] = [[8.0, 3.5], [-8.0, 3.5], [6.0, -6.0], [-6.0, -6.0
 /// A rectangle: left, top, right, bottom.
 pub(super) type Area = [f64; 4];
 
-/// The free area around a point.
 pub(super) fn around([x, y]: [f64; 2]) -> Area {
     [x - MARKER, y - MARKER, x + MARKER, y + MARKER]
 }

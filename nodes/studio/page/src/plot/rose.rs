@@ -5,10 +5,8 @@ use crate::markup::Html;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write;
 
-/// Width and height.
 const PICTURE: [f64; 2] = [300.0, 330.0];
 
-/// Centre of the circles.
 const CENTRE: [f64; 2] = [150.0, 184.0];
 
 /// Radius of the largest circle.

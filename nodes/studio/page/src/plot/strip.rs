@@ -9,13 +9,11 @@ use crate::markup::{Html, escaped};
 /// Width: a column of a narrow screen, so that letters are never drawn smaller than written.
 const WIDTH: f64 = 340.0;
 
-/// Height of the axes.
 const HEIGHT: f64 = 150.0;
 
 /// Top of the axes below the title, and height of a row of the legend.
 const TOP: [f64; 2] = [34.0, 16.0];
 
-/// Mean width of a letter.
 const LETTER: f64 = 6.4;
 
 /// Most letters of a name beside the end of its line; longer ones are in a legend.

@@ -11,7 +11,6 @@ const ON_WHITE: [&str; Series::COLOURS] =
 const ON_DARK: [&str; Series::COLOURS] =
     ["#4aa3df", "#ff8a3d", "#2fc79b", "#e3a1c6", "#f2b632", "#8fd0f5", "#f0f0f0", "#c9a64a", "#b08fe0"];
 
-/// The style sheet of one SVG.
 pub(super) fn style(theme: Theme) -> String {
     let sheet = |paper: &str, ink: &str, faint: &str, grid: &str, colours: &[&str]| {
         let mut css = format!(

@@ -70,7 +70,6 @@ pub const DEVIATORIC_FABRIC: f64 = 0.10;
 /// The samples from the most to the fewest contacts, as in Table I.
 const ORDER: [usize; SAMPLES] = [0, 1, 3, 2];
 
-/// Means by quantity, sample and pressure.
 struct Means<'a>(&'a [Comparison]);
 
 impl Means<'_> {
@@ -135,7 +134,6 @@ fn within(means: &Means<'_>, quantity: Quantity, limit: f64, text: &str, relativ
     Claim { text: text.into(), found, verdict: Verdict::of(exceeded) }
 }
 
-/// An excess over a limit in standard errors.
 fn in_errors(excess: f64, error: Option<f64>) -> f64 {
     match error {
         _ if excess == 0.0 => 0.0,

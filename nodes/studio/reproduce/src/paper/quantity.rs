@@ -178,7 +178,6 @@ mod tests {
         }
     }
 
-    /// ERRATA of the column: S1 and S2 agree with Eq. 14 at the volume strain from 0.607 to 0.636.
     #[test]
     fn the_keys_are_distinct() {
         let mut keys: Vec<_> = Quantity::ALL.iter().map(|(_, key)| key).collect();

@@ -36,7 +36,6 @@ pub(crate) fn of_one(quantity: Quantity, sample: usize, value: f64, grains: f64)
     Some(scale * all[sample] * (GRAINS / grains).sqrt())
 }
 
-/// True for quantities whose scatter is relative.
 fn is_relative(quantity: Quantity) -> bool {
     matches!(quantity, Quantity::K | Quantity::Z | Quantity::Modulus(_) | Quantity::KEmt)
 }

@@ -6,7 +6,6 @@ use grainlab_emt::Inversion;
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
-/// One estimate against the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Error {
     /// Inversion minus truth; `None` without an estimate.
@@ -29,7 +28,6 @@ impl Error {
     }
 }
 
-/// Statistics of errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Score {
     /// Rows whose truth is known.
@@ -62,7 +60,6 @@ impl Score {
         self.absolute += value.abs();
     }
 
-    /// Mean of the errors.
     pub(super) fn bias(&self) -> Option<f64> {
         (self.solved > 0).then_some(self.mean)
     }
@@ -72,7 +69,6 @@ impl Score {
         (self.solved > 1).then(|| (self.squares / (self.solved - 1) as f64).sqrt())
     }
 
-    /// Root of the mean squared error.
     pub(super) fn rms(&self) -> Option<f64> {
         Some((self.bias()?.powi(2) + self.squares / self.solved as f64).sqrt())
     }
@@ -98,7 +94,6 @@ impl Score {
             && binomial_tail(self.covered, self.intervals, STATED) < CHANCE
     }
 
-    /// Intervals that contain the truth.
     pub(super) fn covered(&self) -> u64 {
         self.covered
     }

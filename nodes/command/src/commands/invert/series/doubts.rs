@@ -26,7 +26,6 @@ const DRAWS_TOO_FEW: f64 = 100.0;
 /// Standard deviations between z of the bulk modulus and z of the shear modulus that are a contradiction.
 const MODULI_APART: f64 = 3.0;
 
-/// Collects the sentences of one sample.
 #[derive(Default)]
 struct Sentences {
     doubts: Vec<String>,
@@ -237,7 +236,6 @@ fn chance(p: f64) -> String {
     if p < 1e-4 { "p below 0.0001".to_owned() } else { format!("p {p:.4}") }
 }
 
-/// A sentence for each pressure whose speeds contradict the others.
 fn contradicting_pressures(e: &SeriesEstimate) -> impl Iterator<Item = String> {
     e.pressures.iter().filter_map(|of| {
         let (at, p) = (kilopascals(of.pressure), of.p.filter(|p| *p < SeriesEstimate::CONTRADICTORY)?);
@@ -245,7 +243,6 @@ fn contradicting_pressures(e: &SeriesEstimate) -> impl Iterator<Item = String> {
     })
 }
 
-/// Text on the rows that contradict the others.
 pub(super) fn contradiction(sample: &Sample) -> String {
     let e = &sample.estimate;
     let of_row = |n: usize| {

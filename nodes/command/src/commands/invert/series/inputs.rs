@@ -7,7 +7,6 @@ use grainlab_core::Material;
 use grainlab_emt::{ContactKind, SeriesRow, SpeedMode, SpeedSeries, UNKNOWN_SIZE_SPREAD};
 use std::f64::consts::PI;
 
-/// Error of a speed that has none.
 const DEFAULT_ERROR: f64 = 0.01;
 
 /// Solid fraction that is not given, and standard deviation of a roughness that has none.

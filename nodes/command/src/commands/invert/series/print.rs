@@ -29,7 +29,6 @@ pub(super) fn kilopascals(pascals: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// The answer for people.
 pub(super) fn text(sample: &Sample) -> String {
     let e = &sample.estimate;
     let mut out = format!("contact: {}\n", sample.contact);
@@ -152,7 +151,6 @@ fn z_ends(p: &PressureEstimate) -> String {
     if is_cut { format!("{} to >6.6", number(p.z.low, 2)) } else { ends(&p.z, 2) }
 }
 
-/// True for a pressure three times beyond the measured ones.
 pub(super) fn is_far(sample: &Sample, pressure: f64) -> bool {
     let measured = || sample.series.rows.iter().filter(|r| r.speed.is_some()).map(|r| r.pressure);
     let (low, high) = (measured().fold(f64::INFINITY, f64::min), measured().fold(0.0, f64::max));

@@ -5,7 +5,6 @@ use grainlab_core::notes::Status;
 use grainlab_emt::{Sensitivity, SeriesEstimate, SpeedSeries};
 use serde::{Serialize, Serializer};
 
-/// One sample with its answer.
 #[derive(Debug, Serialize)]
 pub(super) struct Sample {
     pub(super) sample: String,
@@ -21,7 +20,6 @@ pub(super) struct Sample {
     pub(super) assumed: Vec<String>,
     /// Sentences on what is not determined, contradicts, or z depends on.
     pub(super) notes: Vec<String>,
-    /// Reasons to doubt the result.
     pub(super) doubts: Vec<String>,
 }
 

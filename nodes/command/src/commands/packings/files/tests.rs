@@ -2,8 +2,7 @@ use super::*;
 use grainlab_msgs::{Guid, msg, to_cdr, topics};
 use grainlab_recordings::{Incoming, RunWriter, TopicSpec, WriterOptions};
 
-/// A recording whose one packing message is not a valid packing: the error and the exit code show whether it
-/// was reached.
+/// A recording of one invalid packing message: the error and the exit code show whether it was reached.
 fn recording(folder: &Path) -> PathBuf {
     let topic = TopicSpec::of_contract(&topics::PACKING, "/packing");
     let mut run = RunWriter::create(folder, "r", &[topic], WriterOptions::default()).unwrap();

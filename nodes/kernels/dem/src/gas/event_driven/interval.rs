@@ -11,7 +11,6 @@ use crate::gas::error::GasError;
 use crate::gas::grid::{Grid, Image, NO_GRAIN, Neighbour, cell_vectors};
 use grainlab_core::Vec3;
 
-/// The next collision of a grain.
 #[derive(Clone, Copy, Debug)]
 struct NextCollision {
     /// `NO_GRAIN` if the collision was cancelled, or if the grain collides with no other before the end.
@@ -25,14 +24,12 @@ const NO_COLLISION: NextCollision = NextCollision { partner: NO_GRAIN, image: [0
 /// Neighbours examined together.
 const GROUP: usize = 16;
 
-/// A neighbour that comes closer.
 #[derive(Clone, Copy, Debug, Default)]
 struct ClosingPair {
     neighbour: Neighbour,
     motion: PairMotion,
 }
 
-/// One interval of time.
 pub(super) struct Interval {
     edges: [f64; 3],
     /// Offset of each of the 27 images, m.
@@ -51,9 +48,8 @@ pub(super) struct Interval {
     /// Buffer: images, as bits, in which grains were neighbours; all zero between two uses.
     image_bits: Vec<u32>,
     collisions: Vec<NextCollision>,
-    /// Times of these collisions.
     collision_times: Vec<f64>,
-    /// Buffer: those of a group of neighbours that come closer.
+    /// Buffer: neighbours of a group that come closer.
     closing: [ClosingPair; GROUP],
     /// Times when each grain reaches its margin.
     margin_times: Vec<f64>,
@@ -65,7 +61,6 @@ pub(super) struct Interval {
     origin: Vec<(u32, [f64; 3])>,
 }
 
-/// Counts and sums over the collisions.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct EventCounts {
     pub(super) collisions: u64,
@@ -205,7 +200,6 @@ impl Interval {
         }
     }
 
-    /// Time of the next event of a grain.
     #[inline(always)]
     fn event_time(&self, i: usize) -> f64 {
         self.collision_times[i].min(self.margin_times[i])

@@ -9,7 +9,6 @@ pub(super) const OVERLAP_TOLERANCE: f64 = 1e-9;
 pub(super) struct Grain {
     /// Centre at `time`, folded into the cell, m.
     pub(super) x: [f64; 3],
-    /// Time of this position.
     pub(super) time: f64,
     /// Velocity of the centre, m/s.
     pub(super) v: [f64; 3],
@@ -18,7 +17,6 @@ pub(super) struct Grain {
 }
 
 impl Grain {
-    /// Position at `time`, in free flight.
     #[inline(always)]
     pub(super) fn at(&self, time: f64) -> [f64; 3] {
         let dt = time - self.time;

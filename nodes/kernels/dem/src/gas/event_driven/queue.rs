@@ -19,13 +19,11 @@ impl Queue {
         queue
     }
 
-    /// Time and grain of the next event.
     #[inline(always)]
     pub(super) fn first(&self) -> Option<(f64, u32)> {
         self.heap.first().copied()
     }
 
-    /// Sets the time of a grain's event.
     #[inline]
     pub(super) fn set(&mut self, grain: usize, time: f64) {
         let at = self.index_of[grain] as usize;

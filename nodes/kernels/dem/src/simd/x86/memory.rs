@@ -71,7 +71,6 @@ fn launder<T>(of: &T) -> &T {
     }
 }
 
-/// Row by row, `a` less `b`.
 #[inline(always)]
 fn sub_rows<const N: usize>(mut a: [__m256d; N], b: [__m256d; N]) -> [__m256d; N] {
     for k in 0..N {
@@ -80,7 +79,6 @@ fn sub_rows<const N: usize>(mut a: [__m256d; N], b: [__m256d; N]) -> [__m256d; N
     a
 }
 
-/// Row by row, `a` and `b`.
 #[inline(always)]
 fn add_rows<const N: usize>(mut a: [__m256d; N], b: [__m256d; N]) -> [__m256d; N] {
     for k in 0..N {

@@ -16,7 +16,6 @@ pub(crate) struct Avx2(pub(super) __m256d);
 #[derive(Clone, Copy)]
 pub(crate) struct Avx512(pub(super) __m512d);
 
-/// A row of a table.
 #[derive(Clone, Copy)]
 pub(crate) struct F64x4Avx2(pub(super) __m256d);
 

@@ -4,14 +4,12 @@ use super::registers::{Avx2, Avx512};
 use grainlab_core::lanes::LaneVec3;
 use std::arch::x86_64::*;
 
-/// Columns of four rows.
 #[inline(always)]
 pub(super) fn columns4(rows: [__m256d; 4]) -> LaneVec3<Avx2> {
     let [x, y, z, _] = transpose4(rows);
     LaneVec3 { x: Avx2(x), y: Avx2(y), z: Avx2(z) }
 }
 
-/// Columns of eight rows.
 #[inline(always)]
 pub(super) fn columns8(r: [__m256d; 8]) -> LaneVec3<Avx512> {
     unsafe {
@@ -52,7 +50,6 @@ pub(super) fn two_columns8(r: [Avx512; 8]) -> [LaneVec3<Avx512>; 2] {
     }
 }
 
-/// Eight columns to eight rows.
 #[inline(always)]
 pub(super) fn transpose8(c: [Avx512; 8]) -> [Avx512; 8] {
     unsafe {
@@ -87,7 +84,6 @@ fn transpose_quarters([a, b, c, d]: [__m512d; 4]) -> [__m512d; 4] {
     }
 }
 
-/// Transposes four by four.
 #[inline(always)]
 pub(super) fn transpose4([x, y, z, w]: [__m256d; 4]) -> [__m256d; 4] {
     unsafe {

@@ -319,7 +319,6 @@ impl Fit {
         PointEstimate { jacobian, discrepancy, ..PointEstimate::exact(structure) }
     }
 
-    /// The inferred quantities that are outside the packings of the calibration.
     pub(super) fn outside(&self, network: &RelaxationCalibration) -> Vec<Outside> {
         network.reach.outside_structure(self.z, self.fits_eps.then_some(self.eps))
     }
@@ -330,7 +329,6 @@ fn deviators(network: &RelaxationCalibration) -> [DeviatorLaw; 3] {
     [network.dilatation, network.voigt, network.harmonic]
 }
 
-/// Returns the derivative of the moduli with respect to z.
 pub(super) fn by_z(
     slopes: &ByInvariants,
     network: &RelaxationCalibration,
@@ -344,7 +342,6 @@ pub(super) fn by_z(
         + of_deviators.sum::<Moduli>()
 }
 
-/// Returns the derivative of the moduli with respect to ε.
 pub(super) fn by_eps(
     slopes: &ByInvariants,
     network: &RelaxationCalibration,

@@ -12,7 +12,6 @@ use crate::observation::Observation;
 use grainlab_core::results::InferredQuantity;
 use nalgebra::{SVector, Vector2};
 
-/// See the text of the module.
 pub(super) struct NetworkLikelihood<'a> {
     network: &'a RelaxationCalibration,
     state: State,

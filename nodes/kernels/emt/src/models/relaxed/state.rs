@@ -23,19 +23,14 @@ const SPREADS: u32 = 16;
 pub(super) struct State {
     /// E*^⅔ p^⅓, Pa.
     pub(super) unit: f64,
-    /// The state in the laws.
     pub(super) laws: NetworkState,
-    /// The inputs on which the state depends, with their errors.
     pub(super) inputs: Vec<UncertainInput>,
     /// True if q/p was given.
     pub(super) stress_known: bool,
-    /// True if the sizes were given.
     pub(super) sizes_known: bool,
     /// Levels of the scatter of samples of this size in this state, before their dependence on z.
     pub(super) scatter: [Scatter; 2],
-    /// Whether contacts slid while the moduli were measured.
     pub(super) probe: Probe,
-    /// Quantities outside the packings of the calibration.
     pub(super) outside: Vec<Outside>,
 }
 
@@ -155,7 +150,6 @@ impl State {
     }
 }
 
-/// The error of a quantity that is too far from the packings of the calibration.
 pub(in crate::models) fn too_far(outside: &Outside, calibration: &str) -> EmtError {
     let Outside { quantity, value, range: [low, high], .. } = *outside;
     Note::too_far(quantity, calibration.to_owned(), value, low, high).into()

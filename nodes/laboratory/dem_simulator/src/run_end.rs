@@ -1,0 +1,540 @@
+//! What the end of a run waits for, without clock and bus: the data about the last packing, and an answer to each of them.
+
+use grainlab_msgs::{Topic, topics};
+use grainlab_node_kit::{Exit, Participant};
+use std::collections::{BTreeMap, BTreeSet};
+use std::time::Duration;
+
+/// Topics of data about packings.
+pub(crate) const DATA: [Topic; 3] = [topics::PACKING_REPORT, topics::MODULI, topics::WAVE_SPEEDS];
+
+/// Time between two looks that counts at most: this process was stopped in a longer one.
+const LOOK: Duration = Duration::from_secs(2);
+
+/// Wave speeds that were recorded before a run is resumed.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RecordedSpeeds {
+    /// Number of sets of speeds, by the step of their packing.
+    pub measured: BTreeMap<u64, usize>,
+    /// Steps of the packings whose speeds were inverted.
+    pub inverted: BTreeSet<u64>,
+}
+
+/// Who sends data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Sender {
+    /// A node that measures every packing, and says of each that it has.
+    Node,
+    /// A program that measures the packings of its choice.
+    Program,
+}
+
+/// The processes of the run, as far as discovery and heartbeats tell.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Processes {
+    /// Those that write each topic of data.
+    pub(crate) writers: BTreeMap<&'static str, BTreeSet<Participant>>,
+    /// Those that write answers.
+    pub(crate) inversions: BTreeSet<Participant>,
+    /// Nodes that measure every packing, and whether each is at work.
+    pub(crate) measuring: BTreeMap<Participant, bool>,
+    /// Number of a process in its launch, or the name of its node: the same before and after a restart.
+    pub(crate) names: BTreeMap<Participant, String>,
+    /// True while one of them is stopped by a signal.
+    pub(crate) any_stopped: bool,
+}
+
+/// What is known about the last packing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum State {
+    /// Data of this topic are missing.
+    Open(&'static Topic, Sender),
+    /// Data of this topic are missing, and the node that sends them is not there.
+    Left(&'static Topic),
+    /// Data of this topic have no answer of every inversion.
+    Answering(&'static Topic),
+    /// A node found nothing to invert.
+    Declined(&'static Topic),
+    /// Data of this topic are missing, and no program that sends them is left.
+    Gone(&'static Topic),
+    /// All data are answered; a program may send more.
+    Settling,
+    /// All data are answered.
+    Complete,
+}
+
+/// The end of the wait, and why the run is not complete.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Verdict {
+    pub(crate) exit: Exit,
+    pub(crate) reason: String,
+}
+
+/// Numbers of messages, by packing.
+type Counts = BTreeMap<u64, usize>;
+
+/// Data and answers received so far, and for how long the present state lasts.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct RunEnd {
+    awaited: Vec<Topic>,
+    recorded: RecordedSpeeds,
+    /// The last packing is recorded within a phase: it may have no data.
+    within_phase: bool,
+    data: BTreeMap<(&'static str, Participant), Counts>,
+    /// Data without a value to invert.
+    declined: BTreeSet<(&'static str, Participant, u64)>,
+    answers: BTreeMap<(&'static str, Participant), Counts>,
+    state: Option<State>,
+    lasted: Duration,
+    looked: Option<Duration>,
+}
+
+impl RunEnd {
+    /// Waits for data of the topics `awaited` in any case, and for those of the programs that sent the speeds `recorded`.
+    pub(crate) fn new(awaited: &[Topic], recorded: RecordedSpeeds, within_phase: bool) -> Self {
+        Self { awaited: awaited.to_vec(), recorded, within_phase, ..Self::default() }
+    }
+
+    /// Forgets what was received: latched messages of an earlier run.
+    pub(crate) fn begin(&mut self) {
+        self.data.clear();
+        self.declined.clear();
+        self.answers.clear();
+    }
+
+    /// Notes data about the packing of `step`; `is_declined` if they have no value to invert.
+    pub(crate) fn hear_data(&mut self, topic: &Topic, step: u64, from: Participant, is_declined: bool) {
+        let Some(topic) = DATA.iter().find(|known| known.name == topic.name) else { return };
+        *self.data.entry((topic.name, from)).or_default().entry(step).or_default() += 1;
+        if is_declined {
+            self.declined.insert((topic.name, from, step));
+        }
+        self.lasted = Duration::ZERO;
+    }
+
+    /// Notes an answer to data of the topic named `source`.
+    pub(crate) fn hear_answer(&mut self, source: &str, step: u64, from: Participant) {
+        let Some(topic) = DATA.iter().find(|known| known.name == source) else { return };
+        *self.answers.entry((topic.name, from)).or_default().entry(step).or_default() += 1;
+        self.lasted = Duration::ZERO;
+    }
+
+    /// Looks at the packing of `step` at the time `now`: what its end waits for, or the verdict.
+    pub(crate) fn look(
+        &mut self,
+        step: u64,
+        processes: &Processes,
+        now: Duration,
+    ) -> Result<Verdict, String> {
+        let state = self.state(step, processes);
+        let passed = now.saturating_sub(self.looked.replace(now).unwrap_or(now)).min(LOOK);
+        let is_new = self.state.replace(state) != Some(state);
+        if is_new || self.is_at_work(state, processes) {
+            self.lasted = Duration::ZERO;
+        } else if !processes.any_stopped {
+            self.lasted += passed;
+        }
+        let limit = self.limit(state);
+        if self.lasted >= limit {
+            return Ok(self.verdict(state, step, limit));
+        }
+        Err(match state {
+            State::Open(topic, _) | State::Left(topic) | State::Gone(topic) => {
+                format!("{} of step {step}", topic.name)
+            }
+            State::Answering(topic) => format!("the inversion of the {} of step {step}", topic.name),
+            _ => format!("further data of step {step}"),
+        })
+    }
+
+    fn is_at_work(&self, state: State, processes: &Processes) -> bool {
+        let State::Open(topic, Sender::Node) = state else { return false };
+        let writers = processes.writers.get(topic.name).into_iter().flatten();
+        writers.filter_map(|writer| processes.measuring.get(writer)).any(|is_at_work| *is_at_work)
+    }
+
+    /// Returns the longest time that the end of the run waits in a state.
+    fn limit(&self, state: State) -> Duration {
+        Duration::from_secs(match state {
+            State::Open(_, Sender::Node) if !self.within_phase => 600,
+            State::Open(..) | State::Left(_) => 60,
+            State::Answering(_) => 30,
+            State::Gone(_) => 5,
+            State::Settling => 2,
+            State::Declined(_) | State::Complete => 0,
+        })
+    }
+
+    fn verdict(&self, state: State, step: u64, limit: Duration) -> Verdict {
+        let seconds = limit.as_secs();
+        let (exit, reason) = match state {
+            State::Answering(topic) => (
+                Exit::Failure,
+                format!(
+                    "the {} of the last packing (step {step}) were not inverted within {seconds} s",
+                    topic.name
+                ),
+            ),
+            State::Complete | State::Settling => (Exit::Done, String::new()),
+            _ if self.within_phase => (Exit::Done, String::new()),
+            State::Open(topic, Sender::Node) => (
+                Exit::Failure,
+                format!(
+                    "the last packing (step {step}) was not measured: no {} within {seconds} s",
+                    topic.name
+                ),
+            ),
+            State::Left(topic) => (
+                Exit::Failure,
+                format!(
+                    "the last packing (step {step}) was not measured: the node that sent {} of other packings has ended",
+                    topic.name
+                ),
+            ),
+            State::Declined(topic) => {
+                let nothing =
+                    if topic.name == topics::WAVE_SPEEDS.name { "wave speeds" } else { "stiffness" };
+                (Exit::PhysicsInvalid, format!("the last packing (step {step}) has no {nothing} to invert"))
+            }
+            State::Open(topic, Sender::Program) => (
+                Exit::DataLoss,
+                format!(
+                    "{} of other packings arrived, or are awaited, and none or fewer of the last (step {step}) within {seconds} s",
+                    topic.name
+                ),
+            ),
+            State::Gone(topic) => (
+                Exit::DataLoss,
+                format!(
+                    "{} of other packings arrived, and none or fewer of the last (step {step}): the program that sent them \
+                     has ended",
+                    topic.name
+                ),
+            ),
+        };
+        Verdict { exit, reason }
+    }
+
+    /// Returns the state of the packing of `step`: that of the data that are furthest from complete.
+    fn state(&self, step: u64, processes: &Processes) -> State {
+        let expected = self.expected(step, processes);
+        if expected.is_empty() {
+            return State::Open(&DATA[0], Sender::Node);
+        }
+        let is_gone = |e: &Expected| e.missing && e.sender == Sender::Program && !e.is_sender_present;
+        let (gone, left): (Vec<_>, Vec<_>) = expected.iter().partition(|e| is_gone(e));
+        if let Some(open) = left.iter().find(|e| e.missing) {
+            let has_left = open.sender == Sender::Node && !open.is_sender_present && open.is_known;
+            return if has_left { State::Left(open.topic) } else { State::Open(open.topic, open.sender) };
+        }
+        if let Some(open) = left.iter().find(|e| !e.is_answered) {
+            return State::Answering(open.topic);
+        }
+        if let Some(declined) = left.iter().find(|e| e.is_declined) {
+            return State::Declined(declined.topic);
+        }
+        if let Some(gone) = gone.first() {
+            return State::Gone(gone.topic);
+        }
+        let may_send = |e: &&&Expected| e.sender == Sender::Program && e.is_sender_present;
+        if left.iter().any(|e| may_send(&e)) { State::Settling } else { State::Complete }
+    }
+
+    /// Returns the data that are expected about the packing of `step`.
+    fn expected(&self, step: u64, processes: &Processes) -> Vec<Expected> {
+        let mut expected = Vec::new();
+        for topic in &DATA {
+            let sender_of = |from: &Participant| match processes.measuring.contains_key(from) {
+                true => Sender::Node,
+                false if topic.name == topics::PACKING_REPORT.name => Sender::Node,
+                false => Sender::Program,
+            };
+            let writers = processes.writers.get(topic.name);
+            let is_present = |sender| writers.into_iter().flatten().any(|w| sender_of(w) == sender);
+            let counts = |sender| {
+                let mut counts = Counts::new();
+                let of_sender = self
+                    .data
+                    .iter()
+                    .filter(|((name, from), _)| *name == topic.name && sender_of(from) == sender);
+                of_sender
+                    .flat_map(|(_, counts)| counts)
+                    .for_each(|(step, n)| *counts.entry(*step).or_default() += n);
+                counts
+            };
+            let (of_nodes, mut of_programs) = (counts(Sender::Node), counts(Sender::Program));
+            let is_measured_by_node = is_present(Sender::Node) || !of_nodes.is_empty();
+            let is_of_speeds = topic.name == topics::WAVE_SPEEDS.name;
+            let is_recorded = is_of_speeds && !is_measured_by_node;
+            let is_settled =
+                is_recorded && self.recorded.inverted.contains(&step) && !of_programs.contains_key(&step);
+            if is_recorded {
+                let others = self.recorded.measured.iter().filter(|(other, _)| **other != step);
+                others.for_each(|(step, n)| *of_programs.entry(*step).or_default() += n);
+            }
+            let sets = [of_nodes.get(&step), of_programs.get(&step)].map(|n| n.copied().unwrap_or(0));
+            if is_measured_by_node {
+                expected.push(Expected {
+                    topic,
+                    sender: Sender::Node,
+                    missing: sets[0] == 0,
+                    is_answered: self.is_answered(topic, step, 1, processes),
+                    is_declined: self.is_declined(topic, step, |from| sender_of(from) == Sender::Node),
+                    is_sender_present: is_present(Sender::Node),
+                    is_known: !of_nodes.is_empty(),
+                });
+            }
+            let is_awaited =
+                self.awaited.iter().any(|awaited| awaited.name == topic.name) && !is_measured_by_node;
+            if is_awaited || !of_programs.is_empty() {
+                // A program that sent several sets of data about every other packing sends as many about this one.
+                let of_others =
+                    of_programs.iter().filter(|(other, _)| **other != step).map(|(_, sets)| *sets).min();
+                let is_node = is_awaited && topic.name == topics::PACKING_REPORT.name;
+                expected.push(Expected {
+                    topic,
+                    sender: if is_node { Sender::Node } else { Sender::Program },
+                    missing: !is_settled && sets[1] < of_others.unwrap_or(1),
+                    is_answered: is_settled
+                        || self.is_answered(topic, step, sets[1] + sets[0].min(1), processes),
+                    is_declined: false,
+                    is_sender_present: is_present(Sender::Program) || (is_awaited && of_programs.is_empty()),
+                    is_known: !of_programs.is_empty(),
+                });
+            }
+        }
+        expected
+    }
+
+    fn is_declined(&self, topic: &Topic, step: u64, counts: impl Fn(&Participant) -> bool) -> bool {
+        self.declined.iter().any(|(name, from, of)| (*name, *of) == (topic.name, step) && counts(from))
+    }
+
+    /// True if as many inversions have given so many answers as there are inversions.
+    fn is_answered(&self, topic: &Topic, step: u64, sets: usize, processes: &Processes) -> bool {
+        // A restarted inversion goes on with the answers of its predecessor.
+        let mut by_inversion: BTreeMap<String, usize> = BTreeMap::new();
+        for ((name, from), counts) in &self.answers {
+            if *name == topic.name {
+                *by_inversion.entry(processes.name(from)).or_default() +=
+                    counts.get(&step).copied().unwrap_or(0);
+            }
+        }
+        let inversions: BTreeSet<String> = processes.inversions.iter().map(|p| processes.name(p)).collect();
+        by_inversion.values().filter(|answers| **answers >= sets).count() >= inversions.len().max(1)
+    }
+}
+
+impl Processes {
+    fn name(&self, of: &Participant) -> String {
+        self.names.get(of).cloned().unwrap_or_else(|| format!("{of:02x?}"))
+    }
+}
+
+/// Data of one topic that are expected about a packing.
+struct Expected {
+    topic: &'static Topic,
+    sender: Sender,
+    missing: bool,
+    is_answered: bool,
+    is_declined: bool,
+    is_sender_present: bool,
+    /// Data about some packing arrived.
+    is_known: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const REPORT: &Topic = &topics::PACKING_REPORT;
+    const MODULI: &Topic = &topics::MODULI;
+    const SPEEDS: &Topic = &topics::WAVE_SPEEDS;
+
+    const ANALYZER: Participant = [1; 12];
+    const PROBE: Participant = [2; 12];
+    const PROGRAM: Participant = [3; 12];
+    const INVERSION: Participant = [4; 12];
+
+    /// The processes of a run with an inversion and these writers; analyzer and probe measure every packing.
+    fn processes(writers: &[(&Topic, Participant)]) -> Processes {
+        let mut found = Processes { inversions: [INVERSION].into(), ..Processes::default() };
+        for (topic, writer) in writers {
+            found.writers.entry(topic.name).or_default().insert(*writer);
+        }
+        found.measuring = [(ANALYZER, false), (PROBE, false)].into();
+        found
+    }
+
+    fn end() -> RunEnd {
+        RunEnd::default()
+    }
+
+    /// Data about a packing, and their answer.
+    fn answered(end: &mut RunEnd, topic: &Topic, step: u64, from: Participant) {
+        end.hear_data(topic, step, from, false);
+        end.hear_answer(topic.name, step, INVERSION);
+    }
+
+    /// The exit, and the whole seconds after which it is known.
+    fn ends(end: &mut RunEnd, step: u64, processes: &Processes) -> (Exit, u64) {
+        for second in 0..1000 {
+            if let Ok(verdict) = end.look(step, processes, Duration::from_secs(second)) {
+                assert_eq!(verdict.exit == Exit::Done, verdict.reason.is_empty(), "{verdict:?}");
+                return (verdict.exit, second);
+            }
+        }
+        panic!("it never ends");
+    }
+
+    #[test]
+    fn both_kinds_of_data_of_an_analyzer_and_a_probe_must_be_inverted() {
+        let there = processes(&[(REPORT, ANALYZER), (SPEEDS, PROBE)]);
+        let mut d = end();
+        assert_eq!(d.state(7, &there), State::Open(REPORT, Sender::Node));
+        answered(&mut d, REPORT, 7, ANALYZER);
+        assert_eq!(d.state(7, &there), State::Open(SPEEDS, Sender::Node));
+        d.hear_data(SPEEDS, 7, PROBE, false);
+        d.hear_answer(SPEEDS.name, 6, INVERSION);
+        assert_eq!(d.state(7, &there), State::Answering(SPEEDS), "another packing");
+        d.hear_answer(SPEEDS.name, 7, INVERSION);
+        assert_eq!(ends(&mut d, 7, &there), (Exit::Done, 0));
+    }
+
+    #[test]
+    fn every_way_to_have_no_results_has_its_limit_and_its_exit() {
+        let analyzer = processes(&[(REPORT, ANALYZER)]);
+        assert_eq!(ends(&mut end(), 7, &processes(&[])), (Exit::Failure, 600), "no analyzer");
+        assert_eq!(ends(&mut end(), 7, &analyzer), (Exit::Failure, 600), "a silent analyzer");
+        let mut dead = end();
+        answered(&mut dead, REPORT, 5, ANALYZER);
+        assert_eq!(ends(&mut dead, 7, &processes(&[])), (Exit::Failure, 60), "a dead analyzer");
+        let mut without_inversion = end();
+        without_inversion.hear_data(REPORT, 7, ANALYZER, false);
+        let alone = Processes { inversions: BTreeSet::new(), ..analyzer.clone() };
+        assert_eq!(ends(&mut without_inversion, 7, &alone), (Exit::Failure, 30), "no inversion");
+        let mut gas = end();
+        gas.hear_data(REPORT, 7, ANALYZER, true);
+        gas.hear_answer(REPORT.name, 7, INVERSION);
+        assert_eq!(ends(&mut gas, 7, &analyzer), (Exit::PhysicsInvalid, 0), "a gas");
+        let there = processes(&[(REPORT, ANALYZER), (SPEEDS, PROGRAM)]);
+        for (there, expected) in [(&there, (Exit::DataLoss, 60)), (&analyzer, (Exit::DataLoss, 5))] {
+            let mut silent = end();
+            [5, 7].iter().for_each(|step| answered(&mut silent, REPORT, *step, ANALYZER));
+            answered(&mut silent, SPEEDS, 5, PROGRAM);
+            assert_eq!(ends(&mut silent, 7, there), expected, "a silent instrument, and one that has left");
+        }
+    }
+
+    #[test]
+    fn a_packing_within_a_phase_may_have_no_results_but_those_it_has_are_inverted() {
+        let there = processes(&[(REPORT, ANALYZER)]);
+        let within = || RunEnd::new(&[], RecordedSpeeds::default(), true);
+        assert_eq!(ends(&mut within(), 7, &there), (Exit::Done, 60));
+        let mut measured = within();
+        measured.hear_data(REPORT, 7, ANALYZER, false);
+        assert_eq!(ends(&mut measured, 7, &there), (Exit::Failure, 30));
+    }
+
+    #[test]
+    fn a_probe_at_work_is_waited_for_without_a_limit() {
+        let mut there = processes(&[(SPEEDS, PROBE)]);
+        there.measuring.insert(PROBE, true);
+        let mut d = end();
+        assert!((0..2000).all(|second| d.look(7, &there, Duration::from_secs(second)).is_err()));
+        there.measuring.insert(PROBE, false);
+        let late = (2000..3000).position(|second| d.look(7, &there, Duration::from_secs(second)).is_ok());
+        assert_eq!(late, Some(599));
+    }
+
+    #[test]
+    fn time_does_not_count_while_a_process_or_the_simulator_itself_is_stopped() {
+        let mut there = processes(&[(REPORT, ANALYZER)]);
+        let mut d = end();
+        d.hear_data(REPORT, 7, ANALYZER, false);
+        let mut is_over = |there: &Processes, second| d.look(7, there, Duration::from_secs(second)).is_ok();
+        assert!(!is_over(&there, 0) && !is_over(&there, 500), "the simulator was stopped: one step counts");
+        there.any_stopped = true;
+        assert!((501..1000).all(|second| !is_over(&there, second)));
+        there.any_stopped = false;
+        assert!(!is_over(&there, 1001) && (1002..1032).any(|second| is_over(&there, second)));
+    }
+
+    #[test]
+    fn an_instrument_is_waited_for_once_it_has_measured_and_as_many_shots_as_before() {
+        let there = processes(&[(REPORT, ANALYZER), (SPEEDS, PROGRAM)]);
+        let mut d = end();
+        [7, 9].iter().for_each(|step| answered(&mut d, REPORT, *step, ANALYZER));
+        assert_eq!(d.state(9, &there), State::Complete, "it has measured no packing");
+        (0..3).for_each(|_| answered(&mut d, SPEEDS, 7, PROGRAM));
+        for shot in 0..3 {
+            assert_eq!(d.state(9, &there), State::Open(SPEEDS, Sender::Program), "{shot}");
+            answered(&mut d, SPEEDS, 9, PROGRAM);
+        }
+        assert_eq!(d.state(9, &there), State::Settling);
+        d.hear_data(SPEEDS, 9, PROGRAM, false);
+        assert_eq!(d.state(9, &there), State::Answering(SPEEDS));
+        d.hear_answer(SPEEDS.name, 9, INVERSION);
+        assert_eq!(ends(&mut d, 9, &there), (Exit::Done, 2), "more may come");
+        assert_eq!(d.state(9, &processes(&[(REPORT, ANALYZER)])), State::Complete, "it has left");
+    }
+
+    #[test]
+    fn without_an_analyzer_the_data_of_programs_are_enough() {
+        let there = processes(&[(MODULI, PROGRAM)]);
+        let mut d = end();
+        assert_eq!(d.state(7, &there), State::Open(REPORT, Sender::Node), "it has sent nothing");
+        answered(&mut d, MODULI, 7, PROGRAM);
+        assert_eq!(d.state(7, &there), State::Settling);
+    }
+
+    #[test]
+    fn awaited_data_are_waited_for_though_none_of_another_packing_came() {
+        let there = processes(&[(REPORT, ANALYZER), (MODULI, PROGRAM)]);
+        let mut d = RunEnd::new(&[topics::MODULI, topics::PACKING_REPORT], RecordedSpeeds::default(), false);
+        answered(&mut d, REPORT, 9, ANALYZER);
+        assert_eq!(d.state(9, &there), State::Open(MODULI, Sender::Program));
+        answered(&mut d, MODULI, 9, PROGRAM);
+        assert_eq!(d.state(9, &there), State::Settling);
+    }
+
+    #[test]
+    fn a_resumed_run_waits_for_the_instrument_as_before_and_not_for_what_is_recorded() {
+        let there = processes(&[(REPORT, ANALYZER), (SPEEDS, PROGRAM)]);
+        let recorded = RecordedSpeeds { measured: [(7, 1), (9, 1)].into(), inverted: [7].into() };
+        let mut d = RunEnd::new(&[], recorded, false);
+        [7, 9, 11].iter().for_each(|step| answered(&mut d, REPORT, *step, ANALYZER));
+        assert_eq!(d.state(7, &there), State::Settling);
+        assert_eq!(d.state(9, &there), State::Open(SPEEDS, Sender::Program), "its speeds were not inverted");
+        assert_eq!(d.state(11, &there), State::Open(SPEEDS, Sender::Program));
+        let probe = processes(&[(REPORT, ANALYZER), (SPEEDS, PROBE)]);
+        assert_eq!(
+            d.state(7, &probe),
+            State::Open(SPEEDS, Sender::Node),
+            "a probe measures the packing again"
+        );
+    }
+
+    #[test]
+    fn every_inversion_answers_and_a_restarted_one_goes_on_for_its_predecessor() {
+        let (second, again) = ([5; 12], [6; 12]);
+        let mut there = processes(&[(REPORT, ANALYZER)]);
+        there.inversions.extend([second, again]);
+        let names = [(INVERSION, "a"), (second, "b"), (again, "b")];
+        there.names = names.map(|(participant, name)| (participant, name.to_owned())).into();
+        let mut d = end();
+        answered(&mut d, REPORT, 7, ANALYZER);
+        assert_eq!(d.state(7, &there), State::Answering(REPORT));
+        d.hear_answer(REPORT.name, 7, again);
+        assert_eq!(d.state(7, &there), State::Complete);
+    }
+
+    #[test]
+    fn what_came_before_the_run_began_does_not_count() {
+        let there = processes(&[(REPORT, ANALYZER)]);
+        let mut d = end();
+        answered(&mut d, REPORT, 7, ANALYZER);
+        d.begin();
+        assert_eq!(d.state(7, &there), State::Open(REPORT, Sender::Node));
+    }
+}
