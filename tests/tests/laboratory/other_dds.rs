@@ -184,7 +184,8 @@ fn an_instrument_of_another_vendor_that_a_launch_file_lists_is_of_the_run_and_re
     let program = format!("{} {}", python.display(), program.display());
     let listed = format!("- executable:\n    cmd: {program}\n    name: instrument\n    output: screen\n");
     let demo = include_str!("../../../nodes/launch/demo.launch.yaml");
-    let demo = demo.replace(" min_readers:=2 -p exit", " min_readers:=2 -p min_packing_readers:=3 -p exit");
+    let demo =
+        demo.replace(" min_readers:=2 -p finish", " min_readers:=2 -p min_packing_readers:=3 -p finish");
     assert!(demo.contains("min_packing_readers"));
     lab.write("plugged.launch.yaml", &(demo + &listed));
     let folder = lab.launch(&golden("scenes/tiny.toml"), &["plugged.launch.yaml"]);

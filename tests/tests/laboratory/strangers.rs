@@ -90,7 +90,7 @@ fn by_hand_a_second_inversion_is_an_error_that_names_it_and_a_forged_result_is_l
         let recorder = node("recorder --ros-args -p SCENE -p OUTPUT");
         let simulator = node(
             "dem_simulator --ros-args -p SCENE -p wait_for:=[stress,packing,clock] -p min_readers:=2 \
-             -p exit_when_finished:=true",
+             -p finish:=at_once",
         );
         // After the start of the run, like the forger of answers: before it, two servos are an error.
         until("the run begins", || recorded(&folder, "/stress") > 0);

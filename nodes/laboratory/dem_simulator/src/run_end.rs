@@ -57,6 +57,8 @@ pub(crate) enum State {
     Declined(&'static Topic),
     /// Data of this topic are missing, and no program that sends them is left.
     Gone(&'static Topic),
+    /// All data are answered. A process writes this topic and has sent no heartbeat yet: it may be a node that measures.
+    Unheard(&'static Topic),
     /// All data are answered; a program may send more.
     Settling,
     /// All data are answered.
@@ -139,7 +141,7 @@ impl RunEnd {
             return Ok(self.verdict(state, step, limit));
         }
         Err(match state {
-            State::Open(topic, _) | State::Left(topic) | State::Gone(topic) => {
+            State::Open(topic, _) | State::Left(topic) | State::Gone(topic) | State::Unheard(topic) => {
                 format!("{} of step {step}", topic.name)
             }
             State::Answering(topic) => format!("the inversion of the {} of step {step}", topic.name),
@@ -159,7 +161,7 @@ impl RunEnd {
             State::Open(_, Sender::Node) if !self.within_phase => 600,
             State::Open(..) | State::Left(_) => 60,
             State::Answering(_) => 30,
-            State::Gone(_) => 5,
+            State::Gone(_) | State::Unheard(_) => 5,
             State::Settling => 2,
             State::Declined(_) | State::Complete => 0,
         })
@@ -175,7 +177,7 @@ impl RunEnd {
                     topic.name
                 ),
             ),
-            State::Complete | State::Settling => (Exit::Done, String::new()),
+            State::Complete | State::Settling | State::Unheard(_) => (Exit::Done, String::new()),
             _ if self.within_phase => (Exit::Done, String::new()),
             State::Open(topic, Sender::Node) => (
                 Exit::Failure,
@@ -236,8 +238,18 @@ impl RunEnd {
         if let Some(gone) = gone.first() {
             return State::Gone(gone.topic);
         }
-        let may_send = |e: &&&Expected| e.sender == Sender::Program && e.is_sender_present;
-        if left.iter().any(|e| may_send(&e)) { State::Settling } else { State::Complete }
+        if let Some(unheard) = DATA.iter().find(|topic| self.is_unheard(topic, processes)) {
+            return State::Unheard(unheard);
+        }
+        let may_send = |e: &&Expected| e.sender == Sender::Program && e.is_sender_present;
+        if left.into_iter().any(|e| may_send(&e)) { State::Settling } else { State::Complete }
+    }
+
+    /// True if a process writes a topic, and has sent neither data nor a heartbeat.
+    fn is_unheard(&self, topic: &Topic, processes: &Processes) -> bool {
+        let is_known =
+            |w: &Participant| processes.names.contains_key(w) || self.data.contains_key(&(topic.name, *w));
+        processes.writers.get(topic.name).is_some_and(|writers| !writers.iter().all(is_known))
     }
 
     /// Returns the data that are expected about the packing of `step`.
@@ -363,6 +375,9 @@ mod tests {
             found.writers.entry(topic.name).or_default().insert(*writer);
         }
         found.measuring = [(ANALYZER, false), (PROBE, false)].into();
+        let names =
+            [(ANALYZER, "analyzer"), (PROBE, "probe"), (PROGRAM, "program"), (INVERSION, "inversion")];
+        found.names = names.map(|(participant, name)| (participant, name.to_owned())).into();
         found
     }
 
@@ -521,12 +536,25 @@ mod tests {
         let mut there = processes(&[(REPORT, ANALYZER)]);
         there.inversions.extend([second, again]);
         let names = [(INVERSION, "a"), (second, "b"), (again, "b")];
-        there.names = names.map(|(participant, name)| (participant, name.to_owned())).into();
+        there.names.extend(names.map(|(participant, name)| (participant, name.to_owned())));
         let mut d = end();
         answered(&mut d, REPORT, 7, ANALYZER);
         assert_eq!(d.state(7, &there), State::Answering(REPORT));
         d.hear_answer(REPORT.name, 7, again);
         assert_eq!(d.state(7, &there), State::Complete);
+    }
+
+    #[test]
+    fn a_writer_that_has_sent_nothing_may_be_a_probe_whose_heartbeat_is_on_its_way() {
+        let there = processes(&[(REPORT, ANALYZER), (SPEEDS, PROBE)]);
+        let mut early = there.clone();
+        early.names.remove(&PROBE);
+        early.measuring.remove(&PROBE);
+        let mut d = end();
+        answered(&mut d, REPORT, 7, ANALYZER);
+        assert_eq!(d.state(7, &early), State::Unheard(SPEEDS));
+        assert_eq!(d.state(7, &there), State::Open(SPEEDS, Sender::Node));
+        assert_eq!(ends(&mut d, 7, &early), (Exit::Done, 5), "an instrument that never sends");
     }
 
     #[test]
