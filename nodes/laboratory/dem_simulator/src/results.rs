@@ -4,7 +4,7 @@ use crate::run_end::{DATA, Processes, RunEnd, Verdict};
 use grainlab_msgs::msg::{Microstructure, Moduli, PackingReport, WaveSpeeds};
 use grainlab_msgs::{Guid, stamp, topics};
 use grainlab_node_kit::processes::Status;
-use grainlab_node_kit::{Bus, BusError, Demand, Participant, PeerWatch, Subscription, member_of, run_of};
+use grainlab_node_kit::{Bus, BusError, Demand, Participant, PeerWatch, Subscription};
 use std::collections::BTreeSet;
 
 /// More results than arrive between two steps of the node: an instrument may send hundreds of shots.
@@ -105,10 +105,7 @@ impl Results {
             if let Some(is_at_work) = report.health.measuring() {
                 processes.measuring.insert(participant, is_at_work && report.exit.is_none());
             }
-            let member = member_of(&participant);
-            let is_member = run_of(&participant).is_some() && member > 0;
-            let name = if is_member { format!("member {member}") } else { report.node.clone() };
-            processes.names.insert(participant, name);
+            processes.names.insert(participant, report.node.clone());
             // The same number may be that of another process on another host.
             let of_grainlab = |status: &Status| own.as_ref() == Some(&status.name);
             let is_stopped = Status::of(report.pid).is_some_and(|s| s.is_stopped() && of_grainlab(&s));

@@ -1,12 +1,15 @@
 //! What the end of a run waits for, without clock and bus: the data about the last packing, and an answer to each of them.
 
 use grainlab_msgs::{Topic, topics};
-use grainlab_node_kit::{Exit, Participant};
+use grainlab_node_kit::{Exit, Participant, member_of, run_of};
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
 /// Topics of data about packings.
 pub(crate) const DATA: [Topic; 3] = [topics::PACKING_REPORT, topics::MODULI, topics::WAVE_SPEEDS];
+
+/// Topics that nodes and programs write.
+const OF_PROGRAMS: [Topic; 2] = [topics::MODULI, topics::WAVE_SPEEDS];
 
 /// Time between two looks that counts at most: this process was stopped in a longer one.
 const LOOK: Duration = Duration::from_secs(2);
@@ -38,7 +41,7 @@ pub(crate) struct Processes {
     pub(crate) inversions: BTreeSet<Participant>,
     /// Nodes that measure every packing, and whether each is at work.
     pub(crate) measuring: BTreeMap<Participant, bool>,
-    /// Number of a process in its launch, or the name of its node: the same before and after a restart.
+    /// Names of the nodes whose heartbeats were received.
     pub(crate) names: BTreeMap<Participant, String>,
     /// True while one of them is stopped by a signal.
     pub(crate) any_stopped: bool,
@@ -173,7 +176,7 @@ impl RunEnd {
             State::Answering(topic) => (
                 Exit::Failure,
                 format!(
-                    "the {} of the last packing (step {step}) were not inverted within {seconds} s",
+                    "the data on {} about the last packing (step {step}) were not inverted within {seconds} s",
                     topic.name
                 ),
             ),
@@ -238,8 +241,11 @@ impl RunEnd {
         if let Some(gone) = gone.first() {
             return State::Gone(gone.topic);
         }
-        if let Some(unheard) = DATA.iter().find(|topic| self.is_unheard(topic, processes)) {
+        if let Some(unheard) = OF_PROGRAMS.iter().find(|topic| self.is_unheard(topic, processes)) {
             return State::Unheard(unheard);
+        }
+        if processes.inversions.iter().any(|p| self.is_unheard_inversion(p, processes)) {
+            return State::Unheard(&topics::MICROSTRUCTURE);
         }
         let may_send = |e: &&Expected| e.sender == Sender::Program && e.is_sender_present;
         if left.into_iter().any(|e| may_send(&e)) { State::Settling } else { State::Complete }
@@ -327,20 +333,32 @@ impl RunEnd {
         // A restarted inversion goes on with the answers of its predecessor.
         let mut by_inversion: BTreeMap<String, usize> = BTreeMap::new();
         for ((name, from), counts) in &self.answers {
-            if *name == topic.name {
-                *by_inversion.entry(processes.name(from)).or_default() +=
-                    counts.get(&step).copied().unwrap_or(0);
-            }
+            let answers = by_inversion.entry(processes.name(from)).or_default();
+            *answers += counts.get(&step).filter(|_| *name == topic.name).copied().unwrap_or(0);
         }
-        let inversions: BTreeSet<String> = processes.inversions.iter().map(|p| processes.name(p)).collect();
+        let heard = processes.inversions.iter().filter(|p| !self.is_unheard_inversion(p, processes));
+        let inversions: BTreeSet<String> = heard.map(|p| processes.name(p)).collect();
         by_inversion.values().filter(|answers| **answers >= sets).count() >= inversions.len().max(1)
+    }
+
+    /// True if this inversion has sent neither answers nor a heartbeat: it may have been killed at its start.
+    fn is_unheard_inversion(&self, of: &Participant, processes: &Processes) -> bool {
+        let has_answered = self.answers.keys().any(|(_, from)| from == of);
+        !has_answered && member(of).is_none() && !processes.names.contains_key(of)
     }
 }
 
 impl Processes {
+    /// Returns a name that is the same before and after a restart, if the process has one.
     fn name(&self, of: &Participant) -> String {
-        self.names.get(of).cloned().unwrap_or_else(|| format!("{of:02x?}"))
+        let of_node = || self.names.get(of).cloned().unwrap_or_else(|| format!("{of:02x?}"));
+        member(of).map_or_else(of_node, |member| format!("member {member}"))
     }
+}
+
+/// Returns the number of a process in its launch.
+fn member(of: &Participant) -> Option<u8> {
+    Some(member_of(of)).filter(|member| *member > 0 && run_of(of).is_some())
 }
 
 /// Data of one topic that are expected about a packing.
@@ -358,6 +376,7 @@ struct Expected {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use grainlab_node_kit::{Identity, RunId};
 
     const REPORT: &Topic = &topics::PACKING_REPORT;
     const MODULI: &Topic = &topics::MODULI;
@@ -542,6 +561,23 @@ mod tests {
         assert_eq!(d.state(7, &there), State::Answering(REPORT));
         d.hear_answer(REPORT.name, 7, again);
         assert_eq!(d.state(7, &there), State::Complete);
+    }
+
+    #[test]
+    fn an_inversion_that_was_killed_before_its_first_heartbeat_is_not_missed() {
+        let mut there = processes(&[(REPORT, ANALYZER)]);
+        there.inversions.insert([7; 12]);
+        let mut d = end();
+        answered(&mut d, REPORT, 7, ANALYZER);
+        assert_eq!(ends(&mut d, 7, &there), (Exit::Done, 5));
+        // Of a launched run the restarted process is known by its number.
+        let launched = Identity::member_of(RunId::named("a"), 4);
+        let (killed, again) = (launched.guid_prefix(), launched.guid_prefix());
+        there.inversions = [killed, again].into();
+        let mut d = end();
+        d.hear_data(REPORT, 7, ANALYZER, false);
+        d.hear_answer(REPORT.name, 7, again);
+        assert_eq!(ends(&mut d, 7, &there), (Exit::Done, 0));
     }
 
     #[test]
