@@ -19,8 +19,10 @@ pub(crate) const HOLD: Duration = Duration::from_millis(5);
 const EARLIER: Duration = Duration::from_secs(2);
 /// Time limit for the delivery of a saved state: less than the launcher waits before it kills a simulator.
 pub const SAVED_WITHIN: Duration = Duration::from_secs(20);
-/// Time limit for the acknowledgement of the last messages.
+/// Time limit for the acknowledgement of the last messages. A reader that was killed never acknowledges.
 const FLUSH_LIMIT: Duration = Duration::from_secs(2);
+/// The same where nothing else waits for the end of the process: a reader on a busy host may be seconds behind.
+pub(crate) const PATIENT_FLUSH_LIMIT: Duration = Duration::from_secs(10);
 
 pub(crate) struct Publication {
     queue: SendQueue,
@@ -213,7 +215,11 @@ impl Publication {
 
 /// Waits until the readers have acknowledged the last messages.
 pub(crate) fn flush_last_messages(bus: &mut dyn Bus) {
-    if !bus.flush(FLUSH_LIMIT) {
+    flush_within(bus, FLUSH_LIMIT);
+}
+
+pub(crate) fn flush_within(bus: &mut dyn Bus, limit: Duration) {
+    if !bus.flush(limit) {
         log::warn!("a reader has not acknowledged the last messages");
     }
 }

@@ -260,72 +260,70 @@ impl RunEnd {
 
     /// Returns the data that are expected about the packing of `step`.
     fn expected(&self, step: u64, processes: &Processes) -> Vec<Expected> {
-        let mut expected = Vec::new();
-        for topic in &DATA {
-            let sender_of = |from: &Participant| match processes.measuring.contains_key(from) {
-                true => Sender::Node,
-                false if topic.name == topics::PACKING_REPORT.name => Sender::Node,
-                false => Sender::Program,
-            };
-            let writers = processes.writers.get(topic.name);
-            let is_present = |sender| writers.into_iter().flatten().any(|w| sender_of(w) == sender);
-            let counts = |sender| {
-                let mut counts = Counts::new();
-                let of_sender = self
-                    .data
-                    .iter()
-                    .filter(|((name, from), _)| *name == topic.name && sender_of(from) == sender);
-                of_sender
-                    .flat_map(|(_, counts)| counts)
-                    .for_each(|(step, n)| *counts.entry(*step).or_default() += n);
-                counts
-            };
-            let (of_nodes, mut of_programs) = (counts(Sender::Node), counts(Sender::Program));
-            let is_measured_by_node = is_present(Sender::Node) || !of_nodes.is_empty();
-            let is_of_speeds = topic.name == topics::WAVE_SPEEDS.name;
-            let is_recorded = is_of_speeds && !is_measured_by_node;
-            let is_settled =
-                is_recorded && self.recorded.inverted.contains(&step) && !of_programs.contains_key(&step);
-            if is_recorded {
-                let others = self.recorded.measured.iter().filter(|(other, _)| **other != step);
-                others.for_each(|(step, n)| *of_programs.entry(*step).or_default() += n);
-            }
-            let sets = [of_nodes.get(&step), of_programs.get(&step)].map(|n| n.copied().unwrap_or(0));
-            if is_measured_by_node {
-                expected.push(Expected {
-                    topic,
-                    sender: Sender::Node,
-                    missing: sets[0] == 0,
-                    is_answered: self.is_answered(topic, step, 1, processes),
-                    is_declined: self.is_declined(topic, step, |from| sender_of(from) == Sender::Node),
-                    is_sender_present: is_present(Sender::Node),
-                    is_known: !of_nodes.is_empty(),
-                });
-            }
-            let is_awaited =
-                self.awaited.iter().any(|awaited| awaited.name == topic.name) && !is_measured_by_node;
-            if is_awaited || !of_programs.is_empty() {
-                // A program that sent several sets of data about every other packing sends as many about this one.
-                let of_others =
-                    of_programs.iter().filter(|(other, _)| **other != step).map(|(_, sets)| *sets).min();
-                let is_node = is_awaited && topic.name == topics::PACKING_REPORT.name;
-                expected.push(Expected {
-                    topic,
-                    sender: if is_node { Sender::Node } else { Sender::Program },
-                    missing: !is_settled && sets[1] < of_others.unwrap_or(1),
-                    is_answered: is_settled
-                        || self.is_answered(topic, step, sets[1] + sets[0].min(1), processes),
-                    is_declined: false,
-                    is_sender_present: is_present(Sender::Program) || (is_awaited && of_programs.is_empty()),
-                    is_known: !of_programs.is_empty(),
-                });
-            }
-        }
-        expected
+        let of_topic =
+            |topic| [self.of_nodes(topic, step, processes), self.of_programs(topic, step, processes)];
+        DATA.iter().flat_map(of_topic).flatten().collect()
     }
 
-    fn is_declined(&self, topic: &Topic, step: u64, counts: impl Fn(&Participant) -> bool) -> bool {
-        self.declined.iter().any(|(name, from, of)| (*name, *of) == (topic.name, step) && counts(from))
+    /// Returns what a node sends about the packing of `step`, if one writes the topic or has sent data about any packing.
+    fn of_nodes(&self, topic: &'static Topic, step: u64, processes: &Processes) -> Option<Expected> {
+        let counts = self.counts(topic, Sender::Node, processes);
+        let is_sender_present = processes.has_writer(topic, Sender::Node);
+        (is_sender_present || !counts.is_empty()).then(|| Expected {
+            topic,
+            sender: Sender::Node,
+            missing: !counts.contains_key(&step),
+            is_answered: self.is_answered(topic, step, 1, processes),
+            is_declined: self.is_declined(topic, step, processes),
+            is_sender_present,
+            is_known: !counts.is_empty(),
+        })
+    }
+
+    /// Returns what programs send about the packing of `step`, if they have sent data about any packing or their data are awaited.
+    fn of_programs(&self, topic: &'static Topic, step: u64, processes: &Processes) -> Option<Expected> {
+        let by_node = self.of_nodes(topic, step, processes);
+        let mut counts = self.counts(topic, Sender::Program, processes);
+        let is_recorded = topic.name == topics::WAVE_SPEEDS.name && by_node.is_none();
+        let is_settled = is_recorded && self.recorded.inverted.contains(&step) && !counts.contains_key(&step);
+        if is_recorded {
+            let others = self.recorded.measured.iter().filter(|(other, _)| **other != step);
+            others.for_each(|(step, n)| *counts.entry(*step).or_default() += n);
+        }
+        let is_awaited = by_node.is_none() && self.awaited.iter().any(|awaited| awaited.name == topic.name);
+        if counts.is_empty() && !is_awaited {
+            return None;
+        }
+        // A program that sent several sets of data about every other packing sends as many about this one.
+        let of_others = counts.iter().filter(|(other, _)| **other != step).map(|(_, sets)| *sets).min();
+        let sets = counts.get(&step).copied().unwrap_or(0);
+        let answers = sets + usize::from(by_node.is_some_and(|data| !data.missing));
+        Some(Expected {
+            topic,
+            sender: if Processes::is_of_nodes(topic) { Sender::Node } else { Sender::Program },
+            missing: !is_settled && sets < of_others.unwrap_or(1),
+            is_answered: is_settled || self.is_answered(topic, step, answers, processes),
+            is_declined: false,
+            is_sender_present: counts.is_empty() || processes.has_writer(topic, Sender::Program),
+            is_known: !counts.is_empty(),
+        })
+    }
+
+    /// Counts the data of a topic by packing.
+    fn counts(&self, topic: &Topic, sender: Sender, processes: &Processes) -> Counts {
+        let mut counts = Counts::new();
+        for ((name, from), by_step) in &self.data {
+            if *name == topic.name && processes.sender(topic, from) == sender {
+                by_step.iter().for_each(|(step, n)| *counts.entry(*step).or_default() += n);
+            }
+        }
+        counts
+    }
+
+    /// True if a node found nothing to invert.
+    fn is_declined(&self, topic: &Topic, step: u64, processes: &Processes) -> bool {
+        let by_node = |from| processes.sender(topic, from) == Sender::Node;
+        self.declined.iter().any(|(name, from, of)| (*name, *of) == (topic.name, step) && by_node(from))
     }
 
     /// True if as many inversions have given so many answers as there are inversions.
@@ -349,6 +347,22 @@ impl RunEnd {
 }
 
 impl Processes {
+    /// True if only nodes write a topic.
+    fn is_of_nodes(topic: &Topic) -> bool {
+        !OF_PROGRAMS.iter().any(|known| known.name == topic.name)
+    }
+
+    /// Returns which kind of process sends data on a topic.
+    fn sender(&self, topic: &Topic, from: &Participant) -> Sender {
+        let is_node = self.measuring.contains_key(from) || Self::is_of_nodes(topic);
+        if is_node { Sender::Node } else { Sender::Program }
+    }
+
+    fn has_writer(&self, topic: &Topic, sender: Sender) -> bool {
+        let writers = self.writers.get(topic.name).into_iter().flatten();
+        writers.into_iter().any(|writer| self.sender(topic, writer) == sender)
+    }
+
     /// Returns a name that is the same before and after a restart, if the process has one.
     fn name(&self, of: &Participant) -> String {
         let of_node = || self.names.get(of).cloned().unwrap_or_else(|| format!("{of:02x?}"));

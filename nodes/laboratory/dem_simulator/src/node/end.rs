@@ -2,7 +2,7 @@
 
 use super::DemSimulator;
 use crate::messages::Remark;
-use crate::publication::{HOLD, flush_last_messages};
+use crate::publication::{HOLD, PATIENT_FLUSH_LIMIT, flush_within};
 use crate::run_end::Verdict;
 use crate::settings::Finish;
 use grainlab_msgs::msg::RunState;
@@ -16,11 +16,11 @@ impl DemSimulator {
         }
         let finish = self.settings.finish;
         if finish == Finish::AtOnce {
-            flush_last_messages(bus);
+            flush_within(bus, PATIENT_FLUSH_LIMIT);
             return Ok(Next::Finished(Exit::Done));
         }
         if let Some(Verdict { exit, reason }) = self.verdict.as_ref().filter(|_| finish == Finish::Inverted) {
-            flush_last_messages(bus);
+            flush_within(bus, PATIENT_FLUSH_LIMIT);
             return match exit {
                 Exit::Done => Ok(Next::Finished(Exit::Done)),
                 exit => Err(NodeError::new(*exit, reason)),
