@@ -1,6 +1,7 @@
 //! The results of the run as they arrive: data about packings, answers to them, and the processes that send both.
 
 use crate::run_end::{DATA, Processes, RunEnd, Verdict};
+use grainlab_msgs::boundary::{BoundaryError, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::msg::{Microstructure, Moduli, PackingReport, WaveSpeeds};
 use grainlab_msgs::{Guid, stamp, topics};
 use grainlab_node_kit::processes::Status;
@@ -50,6 +51,7 @@ impl Results {
     pub(crate) fn receive(&mut self, bus: &mut dyn Bus) -> Result<(), BusError> {
         self.peers.update(bus, |_, _| {})?;
         while let Some((report, info)) = self.reports.take_valid(bus)? {
+            self.refuse(grainlab_core::results::PackingReport::try_from(&report));
             let is_declined = report.stiffness.is_empty();
             self.end.hear_data(
                 &topics::PACKING_REPORT,
@@ -59,12 +61,14 @@ impl Results {
             );
         }
         while let Some((moduli, info)) = self.moduli.take_valid(bus)? {
+            self.refuse(ModuliReading::try_from(&moduli));
             // Step 0 is that of data about no packing.
             if moduli.source_step > 0 {
                 self.end.hear_data(&topics::MODULI, moduli.source_step, info.writer.participant(), false);
             }
         }
         while let Some((speeds, info)) = self.wave_speeds.take_valid(bus)? {
+            self.refuse(WaveSpeedsReading::try_from(&speeds));
             let is_of_start = self.starts_from_packing && speeds.header.stamp == stamp(0.0);
             if speeds.source_step > 0 || is_of_start {
                 let is_declined = speeds.speeds.is_empty();
@@ -80,6 +84,12 @@ impl Results {
             self.end.hear_answer(&found.source, found.source_step, info.writer.participant());
         }
         Ok(())
+    }
+
+    fn refuse<T>(&mut self, read: Result<T, BoundaryError>) {
+        if let Err(why) = read {
+            self.end.hear_refused(why.to_string());
+        }
     }
 
     /// Judges the end of the run by the results of the packing of `step`; the error is what it waits for.

@@ -14,6 +14,9 @@ const OF_PROGRAMS: [Topic; 2] = [topics::MODULI, topics::WAVE_SPEEDS];
 /// Time between two looks that counts at most: this process was stopped in a longer one.
 const LOOK: Duration = Duration::from_secs(2);
 
+/// Longest time for further data of programs, once all that are expected are answered.
+const SETTLES_WITHIN: Duration = Duration::from_secs(60);
+
 /// Wave speeds that were recorded before a run is resumed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordedSpeeds {
@@ -89,8 +92,12 @@ pub(crate) struct RunEnd {
     /// Data without a value to invert.
     declined: BTreeSet<(&'static str, Participant, u64)>,
     answers: BTreeMap<(&'static str, Participant), Counts>,
+    /// Why data of the run were refused, of the first ones.
+    refused: Option<String>,
     state: Option<State>,
     lasted: Duration,
+    /// Time since all expected data were answered first.
+    settling: Duration,
     looked: Option<Duration>,
 }
 
@@ -105,6 +112,12 @@ impl RunEnd {
         self.data.clear();
         self.declined.clear();
         self.answers.clear();
+        self.refused = None;
+    }
+
+    /// Notes why data were refused, which have no estimate.
+    pub(crate) fn hear_refused(&mut self, why: String) {
+        self.refused.get_or_insert(why);
     }
 
     /// Notes data about the packing of `step`; `is_declined` if they have no value to invert.
@@ -139,14 +152,19 @@ impl RunEnd {
         } else if !processes.any_stopped {
             self.lasted += passed;
         }
+        if state == State::Settling || !self.settling.is_zero() {
+            self.settling += passed;
+        }
         let limit = self.limit(state);
-        if self.lasted >= limit {
+        let has_settled = state == State::Settling && self.settling >= SETTLES_WITHIN;
+        if self.lasted >= limit || has_settled {
             return Ok(self.verdict(state, step, limit));
         }
         Err(match state {
-            State::Open(topic, _) | State::Left(topic) | State::Gone(topic) | State::Unheard(topic) => {
+            State::Open(topic, _) | State::Left(topic) | State::Gone(topic) => {
                 format!("{} of step {step}", topic.name)
             }
+            State::Unheard(topic) => format!("a heartbeat of a process that writes {}", topic.name),
             State::Answering(topic) => format!("the inversion of the {} of step {step}", topic.name),
             _ => format!("further data of step {step}"),
         })
@@ -180,7 +198,10 @@ impl RunEnd {
                     topic.name
                 ),
             ),
-            State::Complete | State::Settling | State::Unheard(_) => (Exit::Done, String::new()),
+            State::Complete | State::Settling | State::Unheard(_) => match &self.refused {
+                None => (Exit::Done, String::new()),
+                Some(why) => (Exit::DataLoss, format!("data were refused and have no estimate: {why}")),
+            },
             _ if self.within_phase => (Exit::Done, String::new()),
             State::Open(topic, Sender::Node) => (
                 Exit::Failure,
@@ -204,15 +225,16 @@ impl RunEnd {
             State::Open(topic, Sender::Program) => (
                 Exit::DataLoss,
                 format!(
-                    "{} of other packings arrived, or are awaited, and none or fewer of the last (step {step}) within {seconds} s",
+                    "the last packing (step {step}) lacks {}, which programs sent about every other packing, or which are awaited: \
+                     too few arrived within {seconds} s",
                     topic.name
                 ),
             ),
             State::Gone(topic) => (
                 Exit::DataLoss,
                 format!(
-                    "{} of other packings arrived, and none or fewer of the last (step {step}): the program that sent them \
-                     has ended",
+                    "the last packing (step {step}) lacks {}, which a program sent about every other packing: that program has \
+                     ended",
                     topic.name
                 ),
             ),
@@ -525,6 +547,27 @@ mod tests {
         d.hear_answer(SPEEDS.name, 9, INVERSION);
         assert_eq!(ends(&mut d, 9, &there), (Exit::Done, 2), "more may come");
         assert_eq!(d.state(9, &processes(&[(REPORT, ANALYZER)])), State::Complete, "it has left");
+    }
+
+    #[test]
+    fn a_program_that_never_stops_is_heard_for_a_minute() {
+        let there = processes(&[(REPORT, ANALYZER), (SPEEDS, PROGRAM)]);
+        let mut d = end();
+        answered(&mut d, REPORT, 9, ANALYZER);
+        let ended = (0..100).position(|second| {
+            answered(&mut d, SPEEDS, 9, PROGRAM);
+            d.look(9, &there, Duration::from_secs(second)).is_ok()
+        });
+        assert_eq!(ended, Some(60));
+    }
+
+    #[test]
+    fn refused_data_make_a_complete_run_one_with_data_loss() {
+        let there = processes(&[(REPORT, ANALYZER)]);
+        let mut d = end();
+        answered(&mut d, REPORT, 9, ANALYZER);
+        d.hear_refused("NaN is refused".to_owned());
+        assert_eq!(ends(&mut d, 9, &there), (Exit::DataLoss, 0));
     }
 
     #[test]

@@ -42,6 +42,9 @@ impl DemSimulator {
         match judged {
             Err(what) => {
                 self.remark = format!("waiting for {what}").into();
+                if self.notice_due(bus.now()) {
+                    log::info!("{}", self.remark.text);
+                }
                 false
             }
             Ok(verdict) => {

@@ -147,7 +147,7 @@ fn a_simulator_whose_last_packing_is_never_inverted_ends_with_an_error_after_the
     let alone = Settings { awaited: Vec::new(), ..speeds.clone() };
     for (settings, with_inversion, exit, limit, why) in [
         (&alone, false, Exit::Failure, 30, "the data on packing_report about the last packing (step "),
-        (&speeds, true, Exit::DataLoss, 60, "wave_speeds of other packings arrived, or are awaited"),
+        (&speeds, true, Exit::DataLoss, 60, "the last packing (step "),
     ] {
         let (found, took, record) = end_of_simulator(settings, with_inversion);
         let (told, reason) = verdict(&record);

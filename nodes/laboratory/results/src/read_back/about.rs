@@ -52,6 +52,8 @@ pub(super) struct About {
     /// The node that sent it, if it is another one.
     disputed_by: Option<String>,
     wave_speeds: Vec<(Identity, WaveSpeedsReading)>,
+    /// Why the packing has no wave speeds, by the names of the measurements.
+    without_speeds: Vec<(String, Note)>,
     answers: Vec<Answer>,
     /// Data sent and answered, by topic.
     pub(super) data: BTreeMap<&'static str, Measurements>,
@@ -76,7 +78,19 @@ impl About {
         let several = "different reports of this packing were sent: that of the last is the one counted";
         let of_reports = (self.reports_differ && self.disputed_by.is_none()).then(|| Note::remark(several));
         let confused = self.data.iter().filter_map(|(topic, data)| data.confusion(topic).map(Note::remark));
-        self.geometry.iter().cloned().chain(of_reports).chain(confused).collect()
+        let known =
+            self.report.as_ref().and_then(|report| Some(Note::from(report.elasticity.as_ref().err()?)));
+        // A packing without a stiffness carries no wave, for the same reason.
+        let without = self.without_speeds.iter().filter(|(_, note)| Some(note) != known.as_ref());
+        let mut without: Vec<String> = without
+            .map(|(name, note)| match name.as_str() {
+                "" => format!("no wave speeds: {note}"),
+                name => format!("no wave speeds of {name}: {note}"),
+            })
+            .collect();
+        without.dedup();
+        let without = without.into_iter().map(Note::remark);
+        self.geometry.iter().cloned().chain(of_reports).chain(confused).chain(without).collect()
     }
 
     /// That two processes reported this packing differently.
@@ -210,7 +224,11 @@ pub(super) fn enter(
             let about = about(all, step);
             let reading = WaveSpeedsReading::try_from(&message).map_err(refused(step));
             // Nothing is inferred from a packing without wave speeds.
-            if reading.as_ref().is_ok_and(WaveSpeedsReading::is_declined) {
+            if let Ok(declined) = reading.as_ref()
+                && declined.is_declined()
+            {
+                let why = declined.notes.iter().map(|note| (declined.name.clone(), note.clone()));
+                about.without_speeds.extend(why);
                 return Ok(step);
             }
             let identity = Identity::new(&message.name, message.header.stamp);
