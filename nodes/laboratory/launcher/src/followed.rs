@@ -82,7 +82,13 @@ impl Followed {
         let finished = self.finished.as_ref()?;
         let (exit, reason) = (finished.exit()?, finished.message.clone());
         if exit != Exit::Done {
-            self.complain(format!("{reason}: see logs/"));
+            let is_absent = |node: &NodeKind| self.names(*node).next().is_none();
+            let needed = [NodeKind::EmtInversion, NodeKind::FabricAnalyzer];
+            let advice = match needed.into_iter().find(is_absent).filter(|_| exit == Exit::Failure) {
+                Some(node) => format!("the launch file starts no {node}"),
+                None => "see logs/".to_owned(),
+            };
+            self.complain(format!("{reason}: {advice}"));
         }
         Some(exit)
     }
@@ -247,7 +253,10 @@ mod tests {
         assert_eq!(followed.verdict(), None);
         followed.take(state(&[4], "no stiffness"));
         assert_eq!(followed.verdict(), Some(Exit::PhysicsInvalid));
-        assert_eq!(followed.reasons, ["no stiffness: see logs/"]);
+        followed.take(state(&[1], "not inverted"));
+        assert_eq!(followed.verdict(), Some(Exit::Failure));
+        let reasons = ["no stiffness: see logs/", "not inverted: the launch file starts no emt_inversion"];
+        assert_eq!(followed.reasons, reasons);
         followed.take(state(&[0], ""));
         assert_eq!(followed.verdict(), Some(Exit::Done));
     }
