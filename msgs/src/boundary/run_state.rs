@@ -7,6 +7,9 @@ use crate::msg::RunState;
 
 const CHECK: Check = Check("RunState");
 
+const EXITS: &str =
+    "0 (done), 1 (failure), 2 (wrong usage), 3 (data loss), 4 (physics invalid), 130 (interrupted)";
+
 impl RunState {
     /// The message, if it is valid.
     ///
@@ -19,8 +22,7 @@ impl RunState {
         }
         CHECK.share("progress", self.progress)?;
         for code in &self.exit_code {
-            Exit::from_code((*code).into())
-                .ok_or_else(|| CHECK.code("exit_code", *code, "that of an exit"))?;
+            Exit::from_code((*code).into()).ok_or_else(|| CHECK.code("exit_code", *code, EXITS))?;
         }
         Ok(self)
     }

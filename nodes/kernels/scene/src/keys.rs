@@ -153,7 +153,7 @@ pub(crate) static ROLLING_KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
     RollingResistance::PARAMETERS.iter().map(of).collect()
 });
 
-/// Its text is `'static`, as that of every key.
+/// Its text is `'static`, like the text of every key.
 fn law_key(p: &LawParameter, whose: &str) -> Key {
     let path = String::leak(format!("contact.{}", p.key));
     let range = Interval { low: p.range.0, high: p.range.1 };

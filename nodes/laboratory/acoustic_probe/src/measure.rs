@@ -71,7 +71,7 @@ pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, 
     declined(&message.header, &packing, why)
 }
 
-/// Returns the messages for a measured packing; `header` is that of the message of the packing.
+/// Returns the messages for a measured packing; `header` is the header of the packing's message.
 pub fn messages(header: &Header, packing: &Packing, found: &Measurement) -> Result<Measured, BoundaryError> {
     let reading = WaveSpeedsReading {
         density: found.density,

@@ -6,7 +6,7 @@ mod start;
 
 use crate::duplicate_simulators::DuplicateSimulators;
 use crate::messages::{self, Packings, Remark};
-use crate::publication::{HOLD, Publication, flush_last_messages};
+use crate::publication::{FLUSH_LIMIT, HOLD, Publication, flush_last_messages};
 use crate::results::Results;
 use crate::run::Run;
 use crate::run_end::{RunEnd, Verdict};
@@ -255,7 +255,7 @@ impl Node for DemSimulator {
                 Ok(Exit::Interrupted)
             }
             Stage::Finished => {
-                flush_last_messages(bus);
+                flush_last_messages(bus, FLUSH_LIMIT);
                 Ok(self.exit_after_end())
             }
         }

@@ -20,8 +20,8 @@ const EARLIER: Duration = Duration::from_secs(2);
 /// Time limit for the delivery of a saved state: less than the launcher waits before it kills a simulator.
 pub const SAVED_WITHIN: Duration = Duration::from_secs(20);
 /// Time limit for the acknowledgement of the last messages. A reader that was killed never acknowledges.
-const FLUSH_LIMIT: Duration = Duration::from_secs(2);
-/// The same where nothing else waits for the end of the process: a reader on a busy host may be seconds behind.
+pub(crate) const FLUSH_LIMIT: Duration = Duration::from_secs(2);
+/// Time limit where nothing else waits for the end of the process: a reader on a busy host may be seconds behind.
 pub(crate) const PATIENT_FLUSH_LIMIT: Duration = Duration::from_secs(10);
 
 pub(crate) struct Publication {
@@ -69,11 +69,11 @@ impl Publication {
     }
 
     /// Publishes the state of the run once a second, with the remark that `remark` returns.
-    pub(crate) fn progress<R: Into<Remark>>(
+    pub(crate) fn progress(
         &mut self,
         run: &Simulation,
         state: u8,
-        remark: impl FnOnce() -> R,
+        remark: impl FnOnce() -> Remark,
         now: Duration,
     ) {
         if now >= self.next_beat {
@@ -156,7 +156,7 @@ impl Publication {
         self.samples.end(bus, sequence, body).map_err(|e| e.to_string())?;
         self.state(run, msg::RunState::FAILED, reason.to_owned());
         let delivered = self.deliver_all(bus);
-        flush_last_messages(bus);
+        flush_last_messages(bus, FLUSH_LIMIT);
         published?;
         if delivered.map_err(|e| e.to_string())? {
             return Ok(());
@@ -214,11 +214,7 @@ impl Publication {
 }
 
 /// Waits until the readers have acknowledged the last messages.
-pub(crate) fn flush_last_messages(bus: &mut dyn Bus) {
-    flush_within(bus, FLUSH_LIMIT);
-}
-
-pub(crate) fn flush_within(bus: &mut dyn Bus, limit: Duration) {
+pub(crate) fn flush_last_messages(bus: &mut dyn Bus, limit: Duration) {
     if !bus.flush(limit) {
         log::warn!("a reader has not acknowledged the last messages");
     }

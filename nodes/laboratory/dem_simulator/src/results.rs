@@ -62,7 +62,7 @@ impl Results {
         }
         while let Some((moduli, info)) = self.moduli.take_valid(bus)? {
             self.refuse(ModuliReading::try_from(&moduli));
-            // Step 0 is that of data about no packing.
+            // Data about no packing have step 0.
             if moduli.source_step > 0 {
                 self.end.hear_data(&topics::MODULI, moduli.source_step, info.writer.participant(), false);
             }
@@ -116,7 +116,7 @@ impl Results {
                 processes.measuring.insert(participant, is_at_work && report.exit.is_none());
             }
             processes.names.insert(participant, report.node.clone());
-            // The same number may be that of another process on another host.
+            // Another host may have a process with this number.
             let of_grainlab = |status: &Status| own.as_ref() == Some(&status.name);
             let is_stopped = Status::of(report.pid).is_some_and(|s| s.is_stopped() && of_grainlab(&s));
             processes.any_stopped |= report.exit.is_none() && is_stopped;

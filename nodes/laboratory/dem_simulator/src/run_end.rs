@@ -38,9 +38,9 @@ pub(crate) enum Sender {
 /// The processes of the run, as far as discovery and heartbeats tell.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Processes {
-    /// Those that write each topic of data.
+    /// Writers of each topic of data.
     pub(crate) writers: BTreeMap<&'static str, BTreeSet<Participant>>,
-    /// Those that write answers.
+    /// Writers of answers.
     pub(crate) inversions: BTreeSet<Participant>,
     /// Nodes that measure every packing, and whether each is at work.
     pub(crate) measuring: BTreeMap<Participant, bool>,
@@ -102,7 +102,7 @@ pub(crate) struct RunEnd {
 }
 
 impl RunEnd {
-    /// Waits for data of the topics `awaited` in any case, and for those of the programs that sent the speeds `recorded`.
+    /// Waits in any case for data of the topics `awaited`, and for data of the programs that sent the speeds `recorded`.
     pub(crate) fn new(awaited: &[Topic], recorded: RecordedSpeeds, within_phase: bool) -> Self {
         Self { awaited: awaited.to_vec(), recorded, within_phase, ..Self::default() }
     }

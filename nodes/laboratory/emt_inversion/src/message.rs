@@ -25,35 +25,35 @@ pub struct Answer {
 /// Returns the microstructure inferred from the report of a packing; without estimates if the packing has no stiffness. The result
 /// depends only on the two arguments.
 pub fn microstructure_of_report(report: &msg::PackingReport, settings: &Settings) -> Answer {
-    let source =
-        Source { header: &report.header, name: "", step: report.source_step, topic: &topics::PACKING_REPORT };
+    let datum =
+        Datum { header: &report.header, name: "", step: report.source_step, topic: &topics::PACKING_REPORT };
     let observed = match PackingReport::try_from(report) {
         Ok(read) => of_report(&read, settings).map(Ok),
         Err(_) if report.stiffness.is_empty() => None,
         Err(refused) => Some(Err(refused)),
     };
-    observed.map_or_else(|| source.nothing(), |observed| source.answer(observed, settings))
+    observed.map_or_else(|| datum.nothing(), |observed| datum.answer(observed, settings))
 }
 
 /// Returns the microstructure inferred from one set of moduli.
 pub fn microstructure_of_moduli(moduli: &msg::Moduli, settings: &Settings) -> Answer {
     let (header, name, step) = (&moduli.header, &moduli.name, moduli.source_step);
     let observed = ModuliReading::try_from(moduli).map(|reading| of_moduli(&reading, settings));
-    Source { header, name, step, topic: &topics::MODULI }.answer(observed, settings)
+    Datum { header, name, step, topic: &topics::MODULI }.answer(observed, settings)
 }
 
 /// Returns the microstructure inferred from one set of wave speeds; without estimates if the set has notes in place of speeds.
 pub fn microstructure_of_speeds(speeds: &msg::WaveSpeeds, settings: &Settings) -> Answer {
     let (header, name, step) = (&speeds.header, &speeds.name, speeds.source_step);
-    let source = Source { header, name, step, topic: &topics::WAVE_SPEEDS };
+    let datum = Datum { header, name, step, topic: &topics::WAVE_SPEEDS };
     match WaveSpeedsReading::try_from(speeds) {
-        Ok(reading) if reading.is_declined() => source.nothing(),
-        reading => source.answer(reading.map(|reading| of_speeds(&reading, settings)), settings),
+        Ok(reading) if reading.is_declined() => datum.nothing(),
+        reading => datum.answer(reading.map(|reading| of_speeds(&reading, settings)), settings),
     }
 }
 
 /// What an answer copies from its data.
-struct Source<'a> {
+struct Datum<'a> {
     header: &'a Header,
     name: &'a str,
     step: u64,
@@ -72,7 +72,7 @@ fn has_free_contacts(observed: &Observed, source: &Topic) -> bool {
     }
 }
 
-impl Source<'_> {
+impl Datum<'_> {
     fn message(&self, estimates: Vec<msg::Estimate>) -> msg::Microstructure {
         msg::Microstructure {
             header: self.header.clone(),

@@ -163,7 +163,7 @@ impl State {
         Some(ModuliCovariance::from_diagonal(&variance.into()))
     }
 
-    /// Values given for the grains, and those of the calibration for the rest. `None` if none is given, nor an error of one.
+    /// Returns the given values of the grains, with the calibration's for the others. `None` if neither a value nor an error is given.
     fn material(&self, calibration: &Calibration) -> Option<Material> {
         let own = calibration.material();
         let has_error =
@@ -175,7 +175,7 @@ impl State {
         })
     }
 
-    /// The γ/Δ asked for, else the one given, else that of the paper's models; or the name of the missing one.
+    /// Returns the γ/Δ asked for, else the given γ/Δ, else the γ/Δ of the paper's models. The error is the name of the missing γ/Δ.
     fn gamma(&self, asked: Option<StrainRatioSource>) -> Result<StrainRatio, &'static str> {
         let of = |source, measured: Option<f64>, missing| {
             measured.map(|value| StrainRatio { value, stddev: 0.0, source }).ok_or(missing)

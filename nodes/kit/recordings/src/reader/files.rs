@@ -83,7 +83,7 @@ impl BagInformation {
         read.map(|b| Some(b.rosbag2_bagfile_information))
     }
 
-    /// Reads the `metadata.yaml` of a directory, or a readable one beside a file if it names the file.
+    /// Reads the `metadata.yaml` of a directory, or the `metadata.yaml` beside a file if this names the file.
     pub(super) fn beside(path: &Path) -> Result<Option<Self>, String> {
         if path.is_dir() {
             return Self::of(path);

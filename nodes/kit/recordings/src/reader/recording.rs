@@ -125,7 +125,7 @@ impl Recording {
         self.unknown.lock().unwrap_or_else(PoisonError::into_inner).insert(opcode);
     }
 
-    /// Types of the records read so far that MCAP does not define: private ones (from 0x80), and those of a later version.
+    /// Types of the records read so far that MCAP does not define: private types (from 0x80) and types of a later version.
     pub(crate) fn unknown_records(&self) -> BTreeSet<u8> {
         self.unknown.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }

@@ -2,7 +2,7 @@
 
 use super::DemSimulator;
 use crate::messages::Remark;
-use crate::publication::{HOLD, PATIENT_FLUSH_LIMIT, flush_within};
+use crate::publication::{HOLD, PATIENT_FLUSH_LIMIT, flush_last_messages};
 use crate::run_end::Verdict;
 use crate::settings::Finish;
 use grainlab_msgs::msg::RunState;
@@ -16,11 +16,11 @@ impl DemSimulator {
         }
         let finish = self.settings.finish;
         if finish == Finish::AtOnce {
-            flush_within(bus, PATIENT_FLUSH_LIMIT);
+            flush_last_messages(bus, PATIENT_FLUSH_LIMIT);
             return Ok(Next::Finished(Exit::Done));
         }
         if let Some(Verdict { exit, reason }) = self.verdict.as_ref().filter(|_| finish == Finish::Inverted) {
-            flush_within(bus, PATIENT_FLUSH_LIMIT);
+            flush_last_messages(bus, PATIENT_FLUSH_LIMIT);
             return match exit {
                 Exit::Done => Ok(Next::Finished(Exit::Done)),
                 exit => Err(NodeError::new(*exit, reason)),
@@ -48,7 +48,8 @@ impl DemSimulator {
                 false
             }
             Ok(verdict) => {
-                if verdict.exit != Exit::Done {
+                // A process that ends says its error itself.
+                if verdict.exit != Exit::Done && self.settings.finish == Finish::Never {
                     log::error!("{}", verdict.reason);
                 }
                 self.remark = Remark { text: verdict.reason.clone(), exit: Some(verdict.exit) };
